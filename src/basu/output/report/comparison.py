@@ -46,18 +46,18 @@ class Row(NamedTuple):
     track: str  # with a mark where no gate stood before the agent; empty where it is not known
 
     def cell(self, head: str) -> str:
-        """The text under a head; a dash where this run does not have it."""
+        """Return the text under a head; a dash where this run does not have it."""
         return next((column.text for column in self.columns if column.head == head), DASH)
 
 
 def heads(found: Sequence[Row]) -> tuple[str, ...]:
-    """The heads of all rows, in the order in which they first occur; how a run ended comes last."""
+    """Return the heads of all rows, in the order in which they first occur; how a run ended comes last."""
     named = dict.fromkeys(column.head for row in found for column in row.columns if column.head != "ended")
     return (*named, "ended")
 
 
 def rows(runs: Sequence[RunRecord]) -> list[Row]:
-    """A row for each run; agents that appear twice are numbered."""
+    """Return a row for each run; agents that appear twice are numbered."""
     names = Counter(run.agent for run in runs)
     seen: Counter[str] = Counter()
     found = []
@@ -69,7 +69,7 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
 
 
 def row(agent: str, result: Result) -> Row:
-    """The row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
+    """Return the row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
     scores = result.scores._asdict() if result.scores is not None else {}
     track = track_of(result.meta.get("access"))
     columns = [
@@ -95,7 +95,7 @@ def tables(found: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def text(found: Sequence[Row]) -> str:
-    """The tables for a console, one for each track, which stands above it where there are several."""
+    """Return the tables for a console, one for each track, which stands above it where there are several."""
     groups = tables(found)
     if len(groups) == 1:
         return _table(found)
@@ -119,14 +119,14 @@ def _table(found: Sequence[Row]) -> str:
 
 
 def reasons(runs: Sequence[RunRecord]) -> list[str]:
-    """Why each run that did not pass did not, a sentence for each run."""
+    """Return why each run that did not pass did not, a sentence for each run."""
     names = [each.agent for each in rows(runs)]
     asked = [run.result.success for run in runs]
     return [f"{name} {said.sentence}" for name, said in zip(names, asked, strict=True) if not said.passed]
 
 
 def remarks(runs: Sequence[RunRecord]) -> list[str]:
-    """What has to be said before these runs are compared: other routes, other rules."""
+    """Return what has to be said before these runs are compared: other routes, other rules."""
     found = []
     routes = {f"{run.result.meta['route']} of {run.result.meta['town']}" for run in runs if run.result.meta}
     if len(routes) > 1 or not on_one_route(runs):
@@ -184,24 +184,24 @@ def _conditions_of(meta: Mapping[str, Any] | None) -> dict[str, str]:
 
 
 def on_one_route(runs: Sequence[RunRecord]) -> bool:
-    """Whether all that was driven was driven on one plan."""
+    """Return whether all that was driven was driven on one plan."""
     plans = [history.facts.route.points_m for history in histories(runs)]
     return all(plan.shape == plans[0].shape and np.allclose(plan, plans[0]) for plan in plans[1:])
 
 
 def histories(runs: Sequence[RunRecord]) -> list[History]:
-    """The records of those runs in which something was driven."""
+    """Return the records of those runs in which something was driven."""
     return [run.history for run in runs if run.history is not None]
 
 
 def shared_bounds(runs: Sequence[RunRecord]) -> Bounds | None:
-    """The map that shows all of them; None where they are on different routes, or nothing was driven."""
+    """Return the map that shows all of them; None where they are on different routes, or nothing was driven."""
     driven = histories(runs)
     return union([bounds_of(history) for history in driven]) if driven and on_one_route(runs) else None
 
 
 def _rules(scoring: Mapping[str, Any]) -> tuple[object, ...]:
-    """What made the scores, as something that can be compared."""
+    """Return what made the scores, as something that can be compared."""
     rest = sorted((key, round(value, 9)) for key, value in scoring.items() if isinstance(value, float | int))
     return (*sorted(scoring["penalties"].items()), *rest)
 

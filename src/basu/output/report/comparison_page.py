@@ -45,7 +45,7 @@ MOST_BESIDE = 4  # runs that stand as columns, so that the table fits a phone
 
 
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
-    """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
+    """Return the page, to lie in the folder ``beside``; ``more`` stands below the table."""
     compared, shared, axes = rows(runs), shared_bounds(runs), _axes(runs)
     reports = {row.agent: folder / REPORT_FILE for row, folder in zip(compared, folders, strict=True)}
     groups = tables(compared)
@@ -73,7 +73,7 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
 
 
 def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
-    """The table of one track; ``reports`` are the pages of the runs by agent."""
+    """Return the table of one track; ``reports`` are the pages of the runs by agent."""
     named = heads(found)
     return {
         "title": title,
@@ -90,7 +90,7 @@ def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, tit
 
 
 def _address(report: Path, beside: Path) -> str:
-    """The way from the comparison to a report, as a browser writes it."""
+    """Return the way from the comparison to a report, as a browser writes it."""
     return quote(os.path.relpath(report.resolve(), beside.resolve()))
 
 
@@ -152,7 +152,7 @@ def compare(folders: Sequence[Path], output: Path, more: Sequence[Element] = ())
 
 
 def compared(folders: Sequence[Path]) -> str:
-    """The table of a comparison with its remarks; nothing is written.
+    """Return the table of a comparison with its remarks; nothing is written.
 
     Raises:
         UserError: a folder is no run's.

@@ -35,7 +35,7 @@ class Trace(NamedTuple):
 
 
 def paths_png(runs: Sequence[Trace], streets: Sequence[Line]) -> bytes:
-    """The paths of runs by name, over the first one's planned route, as PNG. Streets are centre lines in m."""
+    """Return the paths of runs by name, over the first one's planned route, as PNG. Streets are centre lines in m."""
     names = _distinct([run.name for run in runs])
     route = runs[0].history.facts.route
     points = [route.points_m[:, :2], *(_places_m(run.history) for run in runs)]
@@ -62,7 +62,7 @@ def paths_png(runs: Sequence[Trace], streets: Sequence[Line]) -> bytes:
 
 
 def speeds_png(runs: Sequence[Trace], *, along_route: bool) -> bytes:
-    """The speeds of runs by name, over time or along the route, with the first one's posted limit, as PNG."""
+    """Return the speeds of runs by name, over time or along the route, with the first one's posted limit, as PNG."""
     names = _distinct([run.name for run in runs])
     column = "route_s_m" if along_route else "t_s"
     figure = Figure(figsize=(WIDTH_INCHES, 3.2), layout="constrained")
@@ -93,7 +93,7 @@ def _mark_infractions(axes: Axes, infractions: Sequence[Evidence], *, is_first: 
 
 
 def _distinct(names: Sequence[str]) -> list[str]:
-    """The names, numbered where one occurs several times."""
+    """Return the names, numbered where one occurs several times."""
     return [
         name if names.count(name) == 1 else f"{name} ({names[: number + 1].count(name)})"
         for number, name in enumerate(names)

@@ -155,7 +155,7 @@ def read_net(path: Path) -> Net:
 
 
 def _middle(crossing: "etree._Element") -> tuple[float, float]:
-    """The middle between the ends of a crossing."""
+    """Return the middle between the ends of a crossing."""
     shape = _lane(next(crossing.iter("lane"))).shape
     return 0.5 * (shape[0][0] + shape[-1][0]), 0.5 * (shape[0][1] + shape[-1][1])
 

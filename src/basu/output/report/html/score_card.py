@@ -39,7 +39,7 @@ class Row(NamedTuple):
 
 
 def rows(document: Mapping[str, Any], before: str = "") -> list[Row]:
-    """Every figure of a document, those within its parts under the parts' names; lists by their number."""
+    """Return every figure of a document, those within its parts under the parts' names; lists by their number."""
     found = []
     for key, value in document.items():
         name, unit = _unit(key)
@@ -58,7 +58,7 @@ def table(found: list[Row], caption: str | None = None) -> Element:
 
 
 def _unit(key: str) -> tuple[str, str]:
-    """The name and the unit that a key is made of."""
+    """Return the name and the unit that a key is made of."""
     stem, _, last = key.rpartition("_")
     if stem and last in UNITS:
         return words(stem), UNITS[last]
@@ -66,7 +66,7 @@ def _unit(key: str) -> tuple[str, str]:
 
 
 def _text(value: object, unit: str) -> str:
-    """A value as people read it."""
+    """Return a value as people read it."""
     if value is None:
         return DASH
     if isinstance(value, bool):
@@ -82,7 +82,7 @@ FIGURES = ("comfort_parts", "harm", "largest", "balance", "vibration")  # of the
 
 
 def score_card(result: Result) -> Markup:
-    """The card of a result: equation 5.5 on the left, equation 5.1 on the right, other judgements below."""
+    """Return the card of a result: equation 5.5 on the left, equation 5.1 on the right, other judgements below."""
     if result.scores is None:
         return render("templates/score_card.j2", scores=None, success=result.success)
     counts = Counter(found.kind.value for found in result.infractions)

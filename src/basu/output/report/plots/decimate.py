@@ -15,7 +15,7 @@ BUCKETS = 700  # about one for each pixel column of a chart
 
 
 def curve(values: NDArray[np.float64], buckets: int = BUCKETS) -> list[NDArray[np.int64]]:
-    """Which of ``values`` (T,) to draw: one array of indices for each stretch without nan.
+    """Return which of ``values`` (T,) to draw: one array of indices for each stretch without nan.
 
     A stretch keeps its ends, and of each bucket the least and the greatest value, so no extreme is lost.
     """

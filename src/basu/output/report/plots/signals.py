@@ -37,7 +37,7 @@ class Signals(NamedTuple):
 
 
 def signals(history: History) -> Signals:
-    """The signals of a record; accelerations and jerk are those at a standing passenger's place, filtered."""
+    """Return the signals of a record; accelerations and jerk are those at a standing passenger's place, filtered."""
     frames = history.frames
     sensed = felt(history)
     unknown = np.full(len(frames), np.nan)  # a record too short to feel anything
@@ -71,7 +71,7 @@ FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
 
 
 def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
-    """All charts of a run."""
+    """Return all charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
         "section",

@@ -33,7 +33,7 @@ class Span(NamedTuple):
 
 
 def timeline(history: History, felt: Signals, document: dict[str, Any], found: Sequence[Event]) -> Element:
-    """All rows; ``document`` is the run's result."""
+    """Return all rows; ``document`` is the run's result."""
     begin_s, end_s = float(felt.t_s[0]), max(float(felt.t_s[-1]), float(felt.t_s[0]) + 1e-3)
     rows = [
         ("infractions", _marks([f for f in found if f.factor is not None], begin_s, end_s)),
@@ -58,7 +58,7 @@ def timeline(history: History, felt: Signals, document: dict[str, Any], found: S
 
 
 def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element]:
-    """A mark for each, a link to its evidence."""
+    """Return a mark for each, a link to its evidence."""
     placed, last_share, height = [], -1.0, 0
     for event in sorted(found, key=lambda event: event.t_s):
         at = (event.t_s - begin_s) / (end_s - begin_s)
@@ -69,7 +69,7 @@ def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element
 
 
 def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> list[Element]:
-    """Every stop sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
+    """Return every stop sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
     return [
         e(
             "span",
@@ -102,12 +102,12 @@ def _standing(felt: Signals) -> list[Span]:
 
 
 def _by_hand(felt: Signals) -> list[tuple[float, float]]:
-    """A person drove."""
+    """Return the stretches of time in which a person drove."""
     return stretches(felt.manual, felt.t_s)
 
 
 def _invasions(history: History, begin_s: float, end_s: float) -> list[Element]:
-    """A stroke for each lane invasion."""
+    """Return a stroke for each lane invasion."""
     return [
         e(
             "i",
@@ -135,5 +135,5 @@ def _spans(spans: Sequence[Span], begin_s: float, end_s: float) -> list[Element]
 
 
 def _lasted(what: str, begin_s: float, end_s: float) -> str:
-    """A stretch in words."""
+    """Return a stretch of time in words."""
     return f"{what} from {begin_s:.1f} s to {end_s:.1f} s"

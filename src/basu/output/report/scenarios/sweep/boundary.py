@@ -50,12 +50,12 @@ class Rule(NamedTuple):
         return self.log_chance < math.log(BY_CHANCE)
 
     def words(self) -> str:
-        """Where it fails, as a condition."""
+        """Return where it fails, as a condition."""
         unit = f" {self.axis.unit}" if self.axis.unit and not self.axis.options else ""
         return f"{self.axis.name} {self.condition()}{unit}"
 
     def condition(self) -> str:
-        """The same without name and unit."""
+        """Return the same without name and unit."""
         if self.axis.options:
             return f"is {' or '.join(self.options)}"
         if self.low == -math.inf:
@@ -66,14 +66,14 @@ class Rule(NamedTuple):
 
 
 def best_rule(axis: Axis, failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
-    """The best rule of a parameter over the cases ``among``; None where there is none to try."""
+    """Return the best rule of a parameter over the cases ``among``; None where there is none to try."""
     used = np.ones(len(failed), dtype=np.bool_) if among is None else among
     rules = _of_options(axis, failed, used) if axis.options else _of_numbers(axis, failed, used)
     return min(rules, key=lambda rule: rule.log_chance, default=None)
 
 
 def best_of(axes: Iterable[Axis], failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
-    """The best rule of all parameters that chance does not explain, the number of parameters counted."""
+    """Return the best rule of all parameters that chance does not explain, the number of parameters counted."""
     used = list(axes)
     rules = [rule for axis in used if (rule := best_rule(axis, failed, among)) is not None]
     rules = [rule._replace(log_chance=rule.log_chance + math.log(len(used))) for rule in rules]
@@ -81,7 +81,7 @@ def best_of(axes: Iterable[Axis], failed: NDArray[np.bool_], among: NDArray[np.b
 
 
 def _of_numbers(axis: Axis, failed: NDArray[np.bool_], used: NDArray[np.bool_]) -> list[Rule]:
-    """The best threshold and the best range, each against all of its kind."""
+    """Return the best threshold and the best range, each against all of its kind."""
     values, order = np.sort(axis.values[used]), np.argsort(axis.values[used], kind="stable")
     fails = np.concatenate([[0], np.cumsum(failed[used][order])])
     cuts, total = np.flatnonzero(np.diff(values) > 0.0) + 1, len(values)
@@ -139,7 +139,7 @@ def _rule(
     used: NDArray[np.bool_],
     log_chance: float,
 ) -> Rule:
-    """A rule with its counts."""
+    """Return a rule with the failures inside and outside of it."""
     return Rule(
         axis,
         low,
@@ -175,7 +175,7 @@ def _log_chances(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int,
 
 
 def between(low: float, high: float) -> float:
-    """The shortest number between two."""
+    """Return the shortest number between two."""
     middle = (low + high) / 2.0
     for digits in range(MOST_DIGITS):
         candidate = round(middle, digits)
@@ -217,7 +217,7 @@ def boundary(matrix: dict[str, Any]) -> list[str]:
 
 
 def sentences(found: Boundary) -> list[str]:
-    """What is known, in sentences that begin small, so that they can follow a name."""
+    """Return what is known, in sentences that begin small, so that they can follow a name."""
     study = found.study
     count, failed = len(study.failed), int(study.failed.sum())
     left = [f"{study.absent} more cases were not exercised and are left out."] if study.absent else []
@@ -238,7 +238,7 @@ def sentences(found: Boundary) -> list[str]:
 
 
 def _one(rule: Rule, outside: int) -> str:
-    """A rule of one parameter with its counts."""
+    """Return a rule of one parameter with its counts."""
     inside = int(rule.inside.sum())
     if 2 * rule.failed_inside < inside:
         return (
@@ -261,7 +261,7 @@ def _both(rule: Rule, within: Rule, study: Study) -> str:
 
 
 def _pair_in_words(pair: Pair) -> str:
-    """The map's two parameters, and how far they can be trusted."""
+    """Return the map's two parameters, and how far they can be trusted."""
     near = neighbours_of(pair.used)
     return (
         f"of all pairs, {pair.x.name} and {pair.y.name} predict best: {pair.right} of {pair.used} verdicts, each "

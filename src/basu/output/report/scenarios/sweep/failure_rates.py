@@ -49,12 +49,12 @@ class Pair(NamedTuple):
 
 
 def neighbours_of(count: int) -> int:
-    """How many neighbours weigh: about half the square root of all, 7 of 200."""
+    """Return how many neighbours weigh: about half the square root of all, 7 of 200."""
     return max(LEAST_NEIGHBOURS, round(math.sqrt(count) / 2.0))
 
 
 def best_pair(study: Study) -> Pair | None:
-    """The two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
+    """Return the two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
 
     What chance would do is known from the same cases with their verdicts dealt out anew, so many times: each time the
     best of all pairs counts, as it does here.
@@ -91,7 +91,7 @@ def shares(study: Study, x: Axis, y: Axis, at: NDArray[np.float64]) -> NDArray[n
 
 
 def _chosen(count: int) -> NDArray[np.int64]:
-    """Which cases are looked at."""
+    """Return which cases are looked at."""
     return np.arange(0, count, max(1, -(-count // MOST_CASES)))
 
 

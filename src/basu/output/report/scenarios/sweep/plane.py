@@ -60,7 +60,7 @@ class Scale(NamedTuple):
         return placed
 
     def ticks(self) -> list[tuple[float, str]]:
-        """Where the axis is written on, and what."""
+        """Return the places of the axis with a text, and the texts."""
         if self.axis.options:
             numbers = np.arange(len(self.axis.options), dtype=np.float64)
             room = abs(self.end_px - self.begin_px) / len(self.axis.options)
@@ -73,12 +73,12 @@ class Scale(NamedTuple):
 
 
 def shortened(name: str, letters: int) -> str:
-    """A name in so much room: its end is kept, which tells cases of one scenario apart."""
+    """Return a name in so much room: its end is kept, which tells cases of one scenario apart."""
     return name if len(name) <= letters else f"…{name[-max(letters - 1, 1) :]}"
 
 
 def scales(x: Axis, y: Axis) -> tuple[Scale, Scale]:
-    """Both axes of the map."""
+    """Return both axes of the map."""
     return Scale(x, LEFT_PX, LEFT_PX + WIDTH_PX), Scale(y, TOP_PX + HEIGHT_PX, TOP_PX)
 
 
@@ -110,7 +110,7 @@ def _beside(text: str, place: float, *, is_name: bool) -> Element:
 
 
 def title(axis: Axis) -> str:
-    """A parameter with its unit."""
+    """Return a parameter with its unit."""
     return f"{axis.name}, {axis.unit}" if axis.unit else axis.name
 
 
