@@ -12,7 +12,6 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
 from basu.output.report.comparison import (
-    draw,
     heads,
     histories,
     reasons,
@@ -22,6 +21,7 @@ from basu.output.report.comparison import (
     tables,
     text,
 )
+from basu.output.report.comparison_picture import draw
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
 from basu.output.report.plots.chart import Line, chart
