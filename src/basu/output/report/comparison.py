@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 COMPARED = frozenset({"basu", "carla"})  # programs of which another version may change a drive
 
 
-class Row(NamedTuple):
+class ComparedRun(NamedTuple):
     """What is compared of one run."""
 
     agent: str
@@ -40,13 +40,13 @@ class Row(NamedTuple):
         return next((column.text for column in self.columns if column.head == head), DASH)
 
 
-def heads(found: Sequence[Row]) -> tuple[str, ...]:
+def heads(found: Sequence[ComparedRun]) -> tuple[str, ...]:
     """Return the heads of all rows, in the order in which they first occur; how a run ended comes last."""
     named = dict.fromkeys(column.head for row in found for column in row.columns if column.head != "ended")
     return (*named, "ended")
 
 
-def rows(runs: Sequence[RunRecord]) -> list[Row]:
+def rows(runs: Sequence[RunRecord]) -> list[ComparedRun]:
     """Return a row for each run; agents that appear twice are numbered."""
     names = Counter(run.agent for run in runs)
     seen: Counter[str] = Counter()
@@ -58,7 +58,7 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
     return found
 
 
-def row(agent: str, result: Result) -> Row:
+def row(agent: str, result: Result) -> ComparedRun:
     """Return the row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
     scores = result.scores._asdict() if result.scores is not None else {}
     track = track_of(result.meta.get("access"))
@@ -73,18 +73,20 @@ def row(agent: str, result: Result) -> Row:
         Column("result", result.success.word),
         Column("ended", result.outcome.status.value),
     ]
-    return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns), track)
+    return ComparedRun(
+        agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns), track
+    )
 
 
-def tables(found: Sequence[Row]) -> dict[str, list[Row]]:
+def tables(found: Sequence[ComparedRun]) -> dict[str, list[ComparedRun]]:
     """Return the rows of each track by its name: no table has scores of different tracks."""
-    groups: dict[str, list[Row]] = {}
+    groups: dict[str, list[ComparedRun]] = {}
     for each in found:
         groups.setdefault(each.track, []).append(each)
     return groups
 
 
-def text(found: Sequence[Row]) -> str:
+def text(found: Sequence[ComparedRun]) -> str:
     """Return the tables for a console, one for each track, which stands above it where there are several."""
     groups = tables(found)
     if len(groups) == 1:
@@ -92,7 +94,7 @@ def text(found: Sequence[Row]) -> str:
     return "\n\n".join(f"{titled(track)}\n{_table(group)}" for track, group in groups.items())
 
 
-def _table(found: Sequence[Row]) -> str:
+def _table(found: Sequence[ComparedRun]) -> str:
     """One table: heads in two lines, numbers to the right."""
     named = heads(found)
     lines = [[head.rpartition(" ")[0] for head in named], [head.rpartition(" ")[2] for head in named]]

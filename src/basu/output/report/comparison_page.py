@@ -24,7 +24,7 @@ from basu.output.report.comparison import (
 from basu.output.report.comparison_picture import draw
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
-from basu.output.report.plots.chart import Line, chart
+from basu.output.report.plots.chart import Curve, chart
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
 from basu.output.report.streets import bounds_of
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.comparison import Row
+    from basu.output.report.comparison import ComparedRun
     from basu.output.report.documents import RunRecord
     from basu.output.report.streets import Bounds
 
@@ -72,7 +72,7 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
     return page("Comparison of runs", body)
 
 
-def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
+def _scores(found: Sequence[ComparedRun], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
     """Return the table of one track; ``reports`` are the pages of the runs by agent."""
     named = heads(found)
     return {
@@ -113,7 +113,7 @@ def _pictures(run: RunRecord, shared: Bounds | None, axes: _Axes) -> list[Elemen
     if run.history is None:
         return []
     felt = signals(run.history)
-    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    curves = [Curve("driven", felt.speed_mps, "first"), Curve("limit", felt.limit_mps, "limit", steps=True)]
     bounds = shared or bounds_of(run.history)
     places = [
         (events.symbol(found.kind.value, str(number)), found.x_m, found.y_m)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.output.report import events
-from basu.output.report.plots.chart import Line, Mark, chart
+from basu.output.report.plots.chart import Curve, Flag, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
 from basu.output.report.templates import DASH, TIMES, e, figure, number, render
@@ -124,11 +124,11 @@ def _body(
 def _speed(felt: Signals, event: Event) -> Element:
     """Speed and limit around the moment."""
     near = np.flatnonzero(np.abs(felt.t_s - event.t_s) <= AROUND_S)
-    curves: Sequence[Line] = (
-        Line("driven", felt.speed_mps[near], "first"),
-        Line("limit", felt.limit_mps[near], "limit", steps=True),
+    curves: Sequence[Curve] = (
+        Curve("driven", felt.speed_mps[near], "first"),
+        Curve("limit", felt.limit_mps[near], "limit", steps=True),
     )
-    moment = Mark(event.t_s, event.label, event.title, f"#{event.anchor}", event.factor is not None)
+    moment = Flag(event.t_s, event.label, event.title, f"#{event.anchor}", event.factor is not None)
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 

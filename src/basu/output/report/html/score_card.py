@@ -31,27 +31,27 @@ UNITS = {
 }
 
 
-class Row(NamedTuple):
+class NamedFigure(NamedTuple):
     """A figure by name, as text."""
 
     name: str
     text: str
 
 
-def rows(document: Mapping[str, Any], before: str = "") -> list[Row]:
+def rows(document: Mapping[str, Any], before: str = "") -> list[NamedFigure]:
     """Return every figure of a document, those within its parts under the parts' names; lists by their number."""
     found = []
     for key, value in document.items():
         name, unit = _unit(key)
         name = f"{before}{name}"
         if isinstance(value, dict):
-            found += rows(value, f"{name}: ") if value else [Row(name, "none")]
+            found += rows(value, f"{name}: ") if value else [NamedFigure(name, "none")]
         else:
-            found.append(Row(name, _text(value, unit)))
+            found.append(NamedFigure(name, _text(value, unit)))
     return found
 
 
-def table(found: list[Row], caption: str | None = None) -> Element:
+def table(found: list[NamedFigure], caption: str | None = None) -> Element:
     """Rows as a table."""
     body = e("tbody", *(e("tr", e("th", row.name, scope="row"), e("td", row.text)) for row in found))
     return e("table", None if caption is None else e("caption", caption), body, class_="figures")

@@ -59,7 +59,7 @@ HEADROOM = 0.08  # of the range of values, above and below
 LEAST_APART = 0.06  # of the range: names of levels nearer to each other than this could not be read
 
 
-class Line(NamedTuple):
+class Curve(NamedTuple):
     """One curve of a chart."""
 
     name: str
@@ -76,7 +76,7 @@ class Shade(NamedTuple):
     style: str  # class in report.css: `over`, `manual`
 
 
-class Mark(NamedTuple):
+class Flag(NamedTuple):
     """A moment that a chart points out; a link where there is something to open."""
 
     t_s: float
@@ -88,14 +88,14 @@ class Mark(NamedTuple):
 
 def chart(
     t_s: NDArray[np.float64],
-    lines: Sequence[Line],
+    lines: Sequence[Curve],
     *,
     title: str,
     unit: str,
     id_: str | None = None,
     levels: Sequence[tuple[float, str]] = (),
     shades: Sequence[Shade] = (),
-    marks: Sequence[Mark] = (),
+    marks: Sequence[Flag] = (),
     least_range: tuple[float, float] = (0.0, 0.0),
     least_end_s: float = 0.0,
 ) -> Element:
@@ -159,7 +159,7 @@ def _range(curves: Sequence[NDArray[np.float64]], least: tuple[float, float]) ->
 
 def _square(
     t_s: NDArray[np.float64],
-    lines: Sequence[Line],
+    lines: Sequence[Curve],
     levels: Sequence[tuple[float, str]],
     begin_s: float,
     end_s: float,
@@ -184,7 +184,7 @@ def _square(
     return square
 
 
-def _path(x: NDArray[np.float64], y: NDArray[np.float64], steps: bool) -> str:  # noqa: FBT001 - of a Line
+def _path(x: NDArray[np.float64], y: NDArray[np.float64], steps: bool) -> str:  # noqa: FBT001 - of a Curve
     """Curves as SVG writes them."""
     parts = []
     for stretch in curve(y):
@@ -236,14 +236,14 @@ def _level_names(levels: Sequence[tuple[float, str]], low: float, high: float) -
     ]
 
 
-def _mark(mark: Mark, begin_s: float, end_s: float) -> Element:
+def _mark(mark: Flag, begin_s: float, end_s: float) -> Element:
     """Return a numbered flag at the top of a chart."""
     at = share(mark.t_s, begin_s, end_s)
     style = "flag" if mark.scored else "flag faint"
     return e("a", mark.label, href=mark.href, class_=style, title=mark.title, style=f"left:{at}")
 
 
-def _legend(line: Line) -> Element:
+def _legend(line: Curve) -> Element:
     """Return a sample of a curve and its name."""
     sample = e("svg", e("path", d="M0 5H26", class_=f"line {line.style}"), viewBox="0 0 26 10", class_="sample")
     return e("span", sample, line.name, class_="legend")

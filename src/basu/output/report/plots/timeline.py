@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CROWDED, LOWER_PX = 0.02, 14  # marks nearer than this share of the time are shown lower, by so much
 
 
-class Span(NamedTuple):
+class TimelineSpan(NamedTuple):
     """From when to when something lasted."""
 
     begin_s: float
@@ -43,7 +43,9 @@ def timeline(history: History, felt: Signals, document: dict[str, Any], found: S
         ("standing", _spans(_standing(felt), begin_s, end_s)),
         (
             "by hand",
-            _spans([Span(*s, "manual", "", _lasted("driven by hand", *s)) for s in _by_hand(felt)], begin_s, end_s),
+            _spans(
+                [TimelineSpan(*s, "manual", "", _lasted("driven by hand", *s)) for s in _by_hand(felt)], begin_s, end_s
+            ),
         ),
         ("lane lines crossed", _invasions(history, begin_s, end_s)),
     ]
@@ -83,22 +85,23 @@ def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> lis
     ]
 
 
-def _services(history: History, felt: Signals) -> list[Span]:
+def _services(history: History, felt: Signals) -> list[TimelineSpan]:
     """At rest at a service stop."""
     found = []
     standing = felt.speed_mps < AT_REST_MPS
     for stop in history.facts.route.stops:
         here = standing & serving(history, stop.s_m)
         found += [
-            Span(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s)) for s in stretches(here, felt.t_s)
+            TimelineSpan(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s))
+            for s in stretches(here, felt.t_s)
         ]
     return sorted(found)
 
 
-def _standing(felt: Signals) -> list[Span]:
+def _standing(felt: Signals) -> list[TimelineSpan]:
     """At rest, wherever."""
     at_rest = stretches(felt.speed_mps < AT_REST_MPS, felt.t_s)
-    return [Span(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
+    return [TimelineSpan(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
 
 
 def _by_hand(felt: Signals) -> list[tuple[float, float]]:
@@ -119,7 +122,7 @@ def _invasions(history: History, begin_s: float, end_s: float) -> list[Element]:
     ]
 
 
-def _spans(spans: Sequence[Span], begin_s: float, end_s: float) -> list[Element]:
+def _spans(spans: Sequence[TimelineSpan], begin_s: float, end_s: float) -> list[Element]:
     """Bars; the shortest can still be seen."""
     return [
         e(

@@ -63,7 +63,7 @@ def roles_of(result: dict[str, Any]) -> dict[int, str]:
 
 
 def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
-    """Return the moment that the criteria judged; where none did, the nearest of the record. None without any actor.
+    """The moment that the criteria judged; where none did, the nearest of the record. None without any actor.
 
     A deciding criterion comes before a reported one: it concerns the scenario's own actors.
     """
@@ -85,7 +85,7 @@ def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encoun
 
 
 def contacts_of(result: dict[str, Any], history: History, span: Span) -> list[Contact]:
-    """Return the first touch of each party within the case."""
+    """The first touch of each party within the case."""
     seen: dict[int, Collision] = {}
     for collision in history.collisions:
         if span.first <= collision.tick <= span.last:
@@ -114,14 +114,14 @@ def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[
 
 
 def _beside(result: dict[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
-    """Return all actors and things near in a tick, by name."""
+    """All actors and things near in a tick, by name."""
     roles, types = roles_of(result), history.facts.actor_types
     actors = [(roles.get(key, types.get(key, "an unknown type")), box) for key, box in boxes_at(history, tick)]
     return [*actors, *thing_boxes(result, float(history.frames["t_s"][tick]))]
 
 
 def _searched(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
-    """Return the least distance of the record to the scenario's actors, or to any actor where it has none.
+    """The least distance of the record to the scenario's actors, or to any actor where it has none.
 
     Pairs are looked at in the order of a lower bound, centres less both radii, until no other can be nearer.
     """
@@ -174,7 +174,7 @@ def _corners(box: Box) -> list[Point]:
 
 
 def _corner_to(point_m: Point, box: Box) -> tuple[float, Point]:
-    """Return how far a point is from a box, and the nearest point of the box."""
+    """How far a point is from a box, and the nearest point of the box."""
     x_m, y_m, yaw_rad, half_length_m, half_width_m = box.tolist()
     cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
     dx, dy = point_m[0] - x_m, point_m[1] - y_m
@@ -215,7 +215,7 @@ class CaseData(NamedTuple):
         return min(int(np.searchsorted(self.history.frames["t_s"], t_s - 1e-6)), len(self.history.frames) - 1)
 
     def own_box(self, tick: int) -> Box:
-        """Return the ego's box in a tick."""
+        """The ego's box in a tick."""
         box: Box = own_boxes(self.history.facts, self.history.frames[tick : tick + 1])[0]
         return box
 

@@ -30,12 +30,12 @@ HEAD_PX = 26.0  # of the line above a picture that stands by itself
 
 @functools.lru_cache
 def picture_style() -> str:
-    """Return the style that a page with such pictures needs."""
+    """The style that a page with such pictures needs."""
     return STYLE_FILE.read_text(encoding="utf-8")
 
 
 def case_picture(result: dict[str, Any], history: History, streets: Sequence[Line]) -> str:
-    """Return a file of its own: SVG with a headline and its style in it."""
+    """A file of its own: SVG with a headline and its style in it."""
     picture = case_drawing(result, history, streets, head_px=HEAD_PX)
     picture.set("xmlns", "http://www.w3.org/2000/svg")
     picture.insert(0, e("style", picture_style()))
@@ -47,7 +47,7 @@ def case_picture(result: dict[str, Any], history: History, streets: Sequence[Lin
 
 
 def case_drawing(result: dict[str, Any], history: History, streets: Sequence[Line], head_px: float = 0.0) -> Element:
-    """Return the picture as a part of a page that has ``picture_style()``; ``head_px`` are left free above it."""
+    """The picture as a part of a page that has ``picture_style()``; ``head_px`` are left free above it."""
     story = story_of(result, history)
     canvas = canvas_for(what_matters(story))
     scene = Scene(story, canvas)
@@ -69,7 +69,7 @@ def case_drawing(result: dict[str, Any], history: History, streets: Sequence[Lin
 
 
 def _title(story: CaseData) -> str:
-    """Return the picture in a sentence, for screen readers."""
+    """The picture in a sentence, for screen readers."""
     met, result = story.met, story.result
     what = f"{result['id']} with {result['agent']} from above, north is up"
     if met is None:

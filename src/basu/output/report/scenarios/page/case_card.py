@@ -48,7 +48,7 @@ def card(
     *,
     picture: bool = True,
 ) -> Markup:
-    """Return the card, open; its place in a page is ``anchor_of``."""
+    """The card, open; its place in a page is ``anchor_of``."""
     is_pictured = picture and history is not None and len(history.frames) > 0
     return render(
         "templates/case_card.j2",
@@ -68,7 +68,7 @@ def card(
 
 
 def bare_card(id_: str, agent: str, result: dict[str, Any], why: str) -> Markup:
-    """Return a card of a case of which no more is known than its line in the matrix."""
+    """A card of a case of which no more is known than its line in the matrix."""
     return render(
         "templates/bare_card.j2",
         look=LOOKS[result["verdict"]],
@@ -86,7 +86,7 @@ def anchor_of(case: str, agent: str) -> str:
 
 
 def _answers(assessment: dict[str, Any]) -> Iterable[tuple[str, str, str, str]]:
-    """Yield the policy's three answers: name, sign, style and sentence of each."""
+    """The policy's three answers: name, sign, style and sentence of each."""
     for name, found in assessment.items():
         is_absent = name == "exercised" and found["holds"] is False
         sign, style = ("○", "absent") if is_absent else ANSWERS[found["holds"]]
@@ -94,14 +94,14 @@ def _answers(assessment: dict[str, Any]) -> Iterable[tuple[str, str, str, str]]:
 
 
 def _judgements(found: Iterable[dict[str, Any]]) -> Iterable[tuple[dict[str, Any], str, str]]:
-    """Yield each criterion's judgement with sign and style, the deciding ones first."""
+    """Each criterion's judgement with sign and style, the deciding ones first."""
     for judgement in sorted(found, key=lambda one: not one["deciding"]):
         sign, style = JUDGEMENTS[judgement["passed"]]
         yield judgement, sign, style if judgement["deciding"] else "reported"
 
 
 def _conditions(result: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the conditions of the case, as names and texts."""
+    """The conditions of the case, as names and texts."""
     return [
         ("town", result["town"]),
         ("vehicle", result["vehicle"]),
@@ -114,7 +114,7 @@ def _conditions(result: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _speeds(measured: dict[str, Any] | None) -> list[tuple[str, str]]:
-    """Return the posted speed and the ego's where the conflict began."""
+    """The posted speed and the ego's where the conflict began."""
     if measured is None:
         return []
     posted_mps = measured["posted_mps"]
@@ -149,7 +149,7 @@ def phase_line(result: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _moments(result: dict[str, Any], begin_s: float, end_s: float) -> list[dict[str, str]]:
-    """Return when the criteria that failed decided."""
+    """When the criteria that failed decided."""
     return [
         {
             "left": share(judgement["t_s"], begin_s, end_s),

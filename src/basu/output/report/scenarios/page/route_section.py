@@ -26,14 +26,14 @@ HERE = Path(__file__).parent
 
 @functools.lru_cache
 def card_style() -> str:
-    """Return the style of all of them."""
+    """The style of all of them."""
     return "\n".join([(HERE / "scenarios.css").read_text(encoding="utf-8"), picture_style(), map_style()])
 
 
 def on_the_way(
     document: dict[str, Any], command: Sequence[str], history: History, streets: Sequence[Line]
 ) -> Markup | None:
-    """Return the section of a run's report; None where there were none. ``document`` is the run's result."""
+    """The section of a run's report; None where there were none. ``document`` is the run's result."""
     met = document.get("scenarios")
     if not met:
         return None
@@ -52,7 +52,7 @@ def _one(
     history: History,
     streets: Sequence[Line],
 ) -> tuple[dict[str, Any], Look | None, Markup | None]:
-    """Return a scenario with the look of its verdict and its card; one that was not reached has neither."""
+    """A scenario with the look of its verdict and its card; one that was not reached has neither."""
     if scenario["verdict"] is None:
         return scenario, None, None
     case = {

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.sweep.failure_rates import Pair
+    from basu.output.report.scenarios.sweep.failure_rates import ParameterPair
     from basu.output.report.scenarios.sweep.study import Axis, Study
 
 
@@ -184,27 +184,27 @@ def between(low: float, high: float) -> float:
     return middle
 
 
-class Boundary(NamedTuple):
+class FailureBoundary(NamedTuple):
     """What is known about it."""
 
     study: Study
     rule: Rule | None  # of one parameter, if any tells the failures
     within: Rule | None  # a second one, of the cases that the first says will fail
     each: list[Rule]  # the best of every parameter, whether chance explains it or not
-    pair: Pair | None  # the two parameters of the map
+    pair: ParameterPair | None  # the two parameters of the map
 
 
-def boundary_of(study: Study) -> Boundary:
+def boundary_of(study: Study) -> FailureBoundary:
     """Look for it."""
     each = [rule for axis in study.axes if (rule := best_rule(axis, study.failed)) is not None]
     if not study.is_mixed:
-        return Boundary(study, None, None, each, best_pair(study))
+        return FailureBoundary(study, None, None, each, best_pair(study))
     rule = best_of(study.axes, study.failed)
     within = None
     if rule is not None:
         rest = [axis for axis in study.axes if axis.name != rule.axis.name]
         within = best_of(rest, study.failed, rule.inside)
-    return Boundary(study, rule, within, each, best_pair(study))
+    return FailureBoundary(study, rule, within, each, best_pair(study))
 
 
 def boundary(matrix: dict[str, Any]) -> list[str]:
@@ -216,7 +216,7 @@ def boundary(matrix: dict[str, Any]) -> list[str]:
     ]
 
 
-def sentences(found: Boundary) -> list[str]:
+def sentences(found: FailureBoundary) -> list[str]:
     """Return what is known, in sentences that begin small, so that they can follow a name."""
     study = found.study
     count, failed = len(study.failed), int(study.failed.sum())
@@ -260,7 +260,7 @@ def _both(rule: Rule, within: Rule, study: Study) -> str:
     )
 
 
-def _pair_in_words(pair: Pair) -> str:
+def _pair_in_words(pair: ParameterPair) -> str:
     """Return the map's two parameters, and how far they can be trusted."""
     near = neighbours_of(pair.used)
     return (

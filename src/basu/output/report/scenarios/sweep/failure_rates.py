@@ -31,7 +31,7 @@ HALF = 0.5
 CERTAIN = 1e-3  # a share stays this far from 0 and 1, so that one mistake does not outweigh all
 
 
-class Pair(NamedTuple):
+class ParameterPair(NamedTuple):
     """Two parameters, and how well they predict verdicts."""
 
     x: Axis
@@ -53,7 +53,7 @@ def neighbours_of(count: int) -> int:
     return max(LEAST_NEIGHBOURS, round(math.sqrt(count) / 2.0))
 
 
-def best_pair(study: Study) -> Pair | None:
+def best_pair(study: Study) -> ParameterPair | None:
     """Return the two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
 
     What chance would do is known from the same cases with their verdicts dealt out anew, so many times: each time the
@@ -63,7 +63,7 @@ def best_pair(study: Study) -> Pair | None:
     failed = study.failed[chosen]
     dice = np.random.default_rng(DEALS)
     verdicts = np.column_stack([failed, *(dice.permutation(failed) for _ in range(DEALS))])  # (n, 1 + DEALS)
-    pairs: list[Pair] = []
+    pairs: list[ParameterPair] = []
     least = np.full(DEALS, np.inf)
     commoner = int(max(failed.sum(), (~failed).sum()))
     for x, y in itertools.combinations(study.axes[:MOST_AXES], 2):
@@ -74,7 +74,7 @@ def best_pair(study: Study) -> Pair | None:
         share = np.clip(share, CERTAIN, 1.0 - CERTAIN)
         losses = -np.where(verdicts, np.log(share), np.log1p(-share)).mean(axis=0)
         right = int(((share[:, 0] > HALF) == failed).sum())
-        pairs.append(Pair(x, y, right, len(failed), commoner, float(losses[0]), 1.0))
+        pairs.append(ParameterPair(x, y, right, len(failed), commoner, float(losses[0]), 1.0))
         least = np.minimum(least, losses[1:])
     if not pairs:
         return None

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.sweep.boundary import Boundary, Rule
+    from basu.output.report.scenarios.sweep.boundary import FailureBoundary, Rule
     from basu.output.report.scenarios.sweep.study import Study
 
 
@@ -43,7 +43,7 @@ ROW_PX = 104.0  # from one row of strips to the next
 BINS = 16
 
 
-def strips(found: Boundary, top_px: float) -> list[Element]:
+def strips(found: FailureBoundary, top_px: float) -> list[Element]:
     """Return a small histogram for every parameter that varied, two in a row."""
     rules = {rule.axis.name: rule for rule in found.each if rule.is_sure}
     drawn = []
@@ -150,7 +150,7 @@ def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | 
     return tostring(picture, encoding="unicode") + "\n"
 
 
-def drawing(found: Boundary, head_px: float = 0.0) -> Element:
+def drawing(found: FailureBoundary, head_px: float = 0.0) -> Element:
     """Return the map, its legend and the strips as a part of a page that has ``map_style()``."""
     study = found.study
     plot_px = TOP_PX + HEIGHT_PX + 44.0
@@ -168,13 +168,13 @@ def drawing(found: Boundary, head_px: float = 0.0) -> Element:
     return extended(picture, strips(found, plot_px + 34.0))
 
 
-def _title(found: Boundary) -> str:
+def _title(found: FailureBoundary) -> str:
     """Return the map in a sentence, for screen readers."""
     study = found.study
     return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
 
 
-def _axes(found: Boundary) -> tuple[Axis, Axis]:
+def _axes(found: FailureBoundary) -> tuple[Axis, Axis]:
     """What the map lies between: the pair that predicts best; where only one parameter varied, the least distance."""
     if found.pair is not None:
         return found.pair.x, found.pair.y
