@@ -70,7 +70,7 @@ def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
 
 
 def _has_window(options: RunOptions, *, by_hand: bool) -> bool:
-    """Return whether a run has a window: a person at devices needs it."""
+    """Whether there is one: a person at devices needs it."""
     return options.hud is not None or (by_hand and options.keys is None)
 
 
