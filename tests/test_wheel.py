@@ -25,7 +25,6 @@ OPTIONAL = (
     "pygame",
     "gymnasium",
     "pyproj",
-    "shapely",
     "IPython",
     "nbclient",
     "warp",

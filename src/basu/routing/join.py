@@ -51,7 +51,7 @@ class _Step(NamedTuple):
 
 
 def join(lanes: LaneGraph, route: RouteDescription) -> list[Piece]:
-    """The lane pieces of the way, in order.
+    """Return the lane pieces of the way, in order.
 
     Raises:
         UserError: a point lies off the road, or no way leads from one point to the next.
@@ -71,7 +71,7 @@ def join(lanes: LaneGraph, route: RouteDescription) -> list[Piece]:
 
 
 def _pieces(start: OnLane, entered: tuple[LaneKey, ...], end: OnLane) -> list[Piece]:
-    """The stretches from one place to the next."""
+    """Return the stretches from one place to the next."""
     if not entered:
         return [Piece(start.key, start.s_m, end.s_m)]
     inner = [Piece(key, None, None) for key in entered[:-1]]
@@ -79,7 +79,7 @@ def _pieces(start: OnLane, entered: tuple[LaneKey, ...], end: OnLane) -> list[Pi
 
 
 def _candidates(lanes: LaneGraph, route: RouteDescription, number: int) -> list[OnLane]:
-    """The lanes that a point of the file may lie on, the nearest first."""
+    """Return the lanes that a point of the file may lie on, the nearest first."""
     point = route.points[number]
     away_m = np.hypot(lanes.points_m[:, 0] - point.x_m, lanes.points_m[:, 1] - point.y_m)
     nearest_m = float(away_m.min()) if len(away_m) else math.inf
@@ -99,7 +99,7 @@ def _candidates(lanes: LaneGraph, route: RouteDescription, number: int) -> list[
 
 
 def _place(lanes: LaneGraph, sample: int, point: RoutePoint, away_m: float) -> OnLane:
-    """The place on a sample's lane beside the point."""
+    """Return the place on a sample's lane beside the point."""
     key = lanes.keys[int(lanes.key_of_sample[sample])]
     cost_m = OFFSET_WEIGHT * away_m
     if point.yaw_rad is not None:
@@ -116,7 +116,7 @@ def _advance(
     route: RouteDescription,
     number: int,
 ) -> list[_Step]:
-    """The best way to each candidate of point ``number`` (from 0) over all candidates of the point before."""
+    """Return the best way to each candidate of point ``number`` (from 0) over all candidates of the point before."""
     before, point = route.points[number - 1], route.points[number]
     straight_m = math.hypot(point.x_m - before.x_m, point.y_m - before.y_m)
     limit_m = DETOUR_FACTOR * straight_m + DETOUR_M
@@ -162,5 +162,5 @@ def _reachable(
 
 
 def _travelled_m(key: LaneKey, from_s_m: float, to_s_m: float) -> float:
-    """How far ``to`` lies ahead of ``from`` in the lane's travel direction; negative where behind."""
+    """Return how far ``to`` lies ahead of ``from`` in the lane's travel direction; negative where behind."""
     return to_s_m - from_s_m if key.lane < 0 else from_s_m - to_s_m

@@ -35,12 +35,12 @@ class Road:
     limits_mps: tuple[float, ...]  # nan where a stretch posts none
 
     def limit_at(self, s_m: float) -> float:
-        """The posted limit in m/s at ``s_m``, nan where there is none."""
+        """Return the posted limit in m/s at ``s_m``, nan where there is none."""
         index = bisect_right(self.limit_starts_m, s_m) - 1
         return self.limits_mps[index] if index >= 0 else math.nan
 
     def section_extent_m(self, section: int) -> tuple[float, float]:
-        """Where a lane section begins and ends."""
+        """Return where a lane section begins and ends."""
         ends_m = (*self.section_starts_m[1:], self.length_m)
         return self.section_starts_m[section], ends_m[section]
 
@@ -70,7 +70,7 @@ def _places(elements: Iterable[etree._Element]) -> list[tuple[float, etree._Elem
 
 
 def _limit_mps(speed: etree._Element | None) -> float:
-    """The value of a ``<speed>`` element in m/s; nan for none, 'no limit' and 'undefined'."""
+    """Return the value of a ``<speed>`` element in m/s; nan for none, 'no limit' and 'undefined'."""
     if speed is None:
         return math.nan
     try:
@@ -111,7 +111,7 @@ class LaneGraph:
 
 
 def key_of(waypoint: carla.Waypoint) -> LaneKey:
-    """The lane that a ``carla.Waypoint`` lies on."""
+    """Return the lane that a ``carla.Waypoint`` lies on."""
     return LaneKey(waypoint.road_id, waypoint.section_id, waypoint.lane_id)
 
 
@@ -181,7 +181,7 @@ def _connections(carla_map: carla.Map, roads: dict[int, Road]) -> nx.DiGraph[Lan
 
 
 def _followers(carla_map: carla.Map, road: Road, key: LaneKey) -> list[LaneKey]:
-    """The lanes that come after the end of a lane; empty at a dead end."""
+    """Return the lanes that come after the end of a lane; empty at a dead end."""
     begin_m, end_m = road.section_extent_m(key.section)
     last_s_m = end_m - STEP_OVER_M / 2.0 if key.lane < 0 else begin_m + STEP_OVER_M / 2.0
     last = carla_map.get_waypoint_xodr(key.road, key.lane, last_s_m)

@@ -195,7 +195,7 @@ def _stops(
     s_m: NDArray[np.float64],
     yaw_rad: NDArray[np.float64],
 ) -> tuple[Stop, ...]:
-    """The service stops on the route, each searched for beyond the one before it, in the file's order."""
+    """Return the service stops on the route, each searched for beyond the one before it, in the file's order."""
     found: list[Stop] = []
     after_m = 0.0
     for mark in description.stops:
@@ -225,7 +225,7 @@ def _stops(
 
 
 def _first_minimum(away_m: NDArray[np.float64], near: NDArray[np.bool_]) -> int:
-    """The nearest point of the first run of near ones: a route may pass the same place again later."""
+    """Return the nearest point of the first run of near ones: a route may pass the same place again later."""
     first = int(np.argmax(near))
     end = first + int(np.argmin(near[first:])) if not near[first:].all() else len(near)
     return first + int(np.argmin(away_m[first:end]))

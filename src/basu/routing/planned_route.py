@@ -79,7 +79,7 @@ LEAST_POINTS = 2  # of a route
 
 
 def until(route: Route, s_m: float) -> Route:
-    """The route as if it ended at its last point not beyond ``s_m``; distances along it stay what they are."""
+    """Return the route as if it ended at its last point not beyond ``s_m``; distances along it stay what they are."""
     count = max(LEAST_POINTS, int(np.searchsorted(route.s_m, s_m, side="right")))
     if count >= len(route.s_m):
         return route
@@ -123,7 +123,7 @@ class Progress(NamedTuple):
 
 
 def advance(route: Route, before: Progress, x_m: float, y_m: float) -> Progress:
-    """The place of (x, y), CARLA frame, searched for near ``before``: some metres back to thirty ahead.
+    """Return the place of (x, y), CARLA frame, searched for near ``before``: some metres back to thirty ahead.
 
     A vehicle that left the route is searched for farther ahead, as far again as it is away, so that it may come back
     beyond what it went round.
@@ -145,7 +145,7 @@ def _distance(place: Progress) -> float:
 
 
 def _on_segment(route: Route, index: int, x_m: float, y_m: float) -> Progress:
-    """The nearest place on the segment from point ``index`` to the next."""
+    """Return the nearest place on the segment from point ``index`` to the next."""
     x0_m, y0_m = float(route.points_m[index, 0]), float(route.points_m[index, 1])
     along_x_m = float(route.points_m[index + 1, 0]) - x0_m
     along_y_m = float(route.points_m[index + 1, 1]) - y0_m

@@ -86,7 +86,7 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
 
 
 def route_element(description: RouteDescription) -> etree._Element:
-    """The <route> that a description was read from, for readers of its other elements.
+    """Return the <route> that a description was read from, for readers of its other elements.
 
     Raises:
         UserError: the file is no longer as it was.
@@ -99,7 +99,7 @@ def route_element(description: RouteDescription) -> etree._Element:
 
 
 def _read(path: Path, including: tuple[Path, ...]) -> tuple[RouteDescription, ...]:
-    """The routes of one file; ``including`` are the files that led here."""
+    """Return the routes of one file; ``including`` are the files that led here."""
     root = _root(path)
     chain = (*including, path.resolve())
     included = [
@@ -112,7 +112,7 @@ def _read(path: Path, including: tuple[Path, ...]) -> tuple[RouteDescription, ..
 
 
 def _root(path: Path) -> etree._Element:
-    """The outermost element of a route file."""
+    """Return the outermost element of a route file."""
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -129,7 +129,7 @@ def _root(path: Path) -> etree._Element:
 
 
 def _included(path: Path, element: etree._Element, chain: tuple[Path, ...]) -> Path:
-    """The file that an <include> of ``path`` names; none of the ``chain`` that led to it."""
+    """Return the file that an <include> of ``path`` names; none of the ``chain`` that led to it."""
     name = element.get("file")
     if not name or (path.parent / name).resolve() in chain:
         raise UserError(
@@ -169,7 +169,7 @@ def _description(element: etree._Element, path: Path) -> RouteDescription:
 
 
 def _point(element: etree._Element, path: Path) -> RoutePoint:
-    """The coordinates of a point; z may be absent, it is found from the road."""
+    """Return the coordinates of a point; z may be absent, it is found from the road."""
     yaw_deg = _number(element, "yaw", path)
     x_m, y_m = _number(element, "x", path), _number(element, "y", path)
     if x_m is None or y_m is None:
@@ -182,7 +182,7 @@ def _point(element: etree._Element, path: Path) -> RoutePoint:
 
 
 def _number(element: etree._Element, name: str, path: Path) -> float | None:
-    """An attribute as a finite number, None where it is absent."""
+    """Return an attribute as a finite number, None where it is absent."""
     text = element.get(name)
     if text is None:
         return None
@@ -198,7 +198,7 @@ def _number(element: etree._Element, name: str, path: Path) -> float | None:
 
 
 def subset(routes: Sequence[RouteDescription], wanted: str) -> tuple[RouteDescription, ...]:
-    """The routes that ``wanted`` names, in the order of the file.
+    """Return the routes that ``wanted`` names, in the order of the file.
 
     ``wanted`` is a list of ids and of ranges ``first-last``; a range runs from one id to the other in the file's order,
     whatever the ids are. An id with a hyphen in it is taken for what it is.
@@ -217,7 +217,7 @@ def subset(routes: Sequence[RouteDescription], wanted: str) -> tuple[RouteDescri
 
 
 def _indices(part: str, ids: list[str], wanted: str) -> range:
-    """Where the routes of one part of the list stand in the file."""
+    """Return where the routes of one part of the list stand in the file."""
     if part in ids:
         return range(ids.index(part), ids.index(part) + 1)
     for cut in (position for position, letter in enumerate(part) if letter == "-"):

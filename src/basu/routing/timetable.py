@@ -162,7 +162,7 @@ def _days(given: object) -> Iterable[str]:
 
 
 def _day(name: object) -> str:
-    """The name of a day."""
+    """Return the name of a day."""
     if name not in DAYS:
         raise ValueError(f"{name!r} is no day; write one of {', '.join(DAYS)}")
     return str(name)
@@ -177,6 +177,6 @@ def _minutes(text: object, what: str) -> float:
 
 
 def _written(value: float) -> str:
-    """The reverse."""
+    """Return a time or headway as it stands in a file, with two parts of two digits."""
     big, small = divmod(round(value), 60)
     return f"{big:02d}:{small:02d}"

@@ -54,7 +54,7 @@ class WeatherMark(NamedTuple):
 
 
 def read_weather(route: etree._Element, path: Path) -> tuple[WeatherMark, ...]:
-    """The weather of a ``<route>``, its marks in the order of the way; empty where it gives none.
+    """Return the weather of a ``<route>``, its marks in the order of the way; empty where it gives none.
 
     Raises:
         UserError: a field that weather does not have, a value that is no number, or two marks at one share.
@@ -72,7 +72,7 @@ def read_weather(route: etree._Element, path: Path) -> tuple[WeatherMark, ...]:
 
 
 def weather_at(marks: Sequence[WeatherMark], percent: float) -> Mapping[str, float]:
-    """The weather so far along the way: before the first and after the last mark, theirs."""
+    """Return the weather so far along the way: before the first and after the last mark, theirs."""
     after = next((mark for mark in marks if mark.percent >= percent), marks[-1])
     before = next((mark for mark in reversed(marks) if mark.percent <= percent), marks[0])
     span = after.percent - before.percent

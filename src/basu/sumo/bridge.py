@@ -163,7 +163,7 @@ class Bridge:
         return self.trip_starts.held
 
     def _centre(self, snapshot: carla.WorldSnapshot) -> carla.Location | None:
-        """Where the circle of what is shown has its middle."""
+        """Return the middle of the circle in which road users are shown."""
         first = self.mirrors.first_id
         if self._radius_m is None or first is None:
             return None

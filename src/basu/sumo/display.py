@@ -102,7 +102,7 @@ class Display:
         return new
 
     def _transform(self, pose: Pose) -> carla.Transform:
-        """The pose on the ground: SUMO's heights where its network has the map's, else the map's own."""
+        """Return the pose on the ground: SUMO's heights where its network has the map's, else the map's own."""
         location = carla.Location(pose.x_m, pose.y_m, pose.z_m)
         if not self.is_level:
             below = self._map.get_waypoint(location, lane_type=carla.LaneType.Any)

@@ -26,7 +26,7 @@ def from_sumo(
     front_m: tuple[float, float, float], angle_deg: float, slope_deg: float, length_m: float,
     offset_m: tuple[float, float],
 ) -> Pose:  # fmt: skip
-    """The pose of a vehicle with its front bumper at ``front_m`` in SUMO's network."""
+    """Return the pose of a vehicle with its front bumper at ``front_m`` in SUMO's network."""
     heading, slope = math.radians(angle_deg), math.radians(slope_deg)
     back_m = 0.5 * length_m * math.cos(slope)
     x_m = front_m[0] - math.sin(heading) * back_m - offset_m[0]
@@ -38,7 +38,7 @@ def from_sumo(
 def to_sumo(
     x_m: float, y_m: float, yaw_deg: float, half_length_m: float, offset_m: tuple[float, float]
 ) -> tuple[float, float, float]:
-    """The front bumper's x and y in SUMO's network, and SUMO's angle, of a vehicle in CARLA's frame."""
+    """Return the front bumper's x and y in SUMO's network, and SUMO's angle, of a vehicle in CARLA's frame."""
     yaw = math.radians(yaw_deg)
     front_x_m, front_y_m = x_m + math.cos(yaw) * half_length_m, y_m + math.sin(yaw) * half_length_m
     return front_x_m + offset_m[0], -front_y_m + offset_m[1], (yaw_deg + NORTH_YAW_DEG) % 360.0

@@ -53,7 +53,7 @@ class Lights:
                     self._link.api.trafficlight.setRedYellowGreenState(light, self._state(light, links, wanted))
 
     def _state(self, light: str, links: dict[int, str], wanted: tuple[str, ...]) -> str:
-        """The phase of SUMO's program that looks like this, with its crossings; else the links alone."""
+        """Return the phase of SUMO's program that looks like this, with its crossings; else the links alone."""
         phases = self._phases[light]
         for phase in phases:
             if all(_letter(phase[nth]) == letter for nth, letter in zip(links, wanted, strict=True)):
@@ -83,12 +83,12 @@ def _letter(state: str) -> str:
 
 
 def _own_green(phases: list[str], nth: int) -> str:
-    """Whether a link is green with or without the right of way, as in SUMO's own program."""
+    """Return whether a link is green with or without the right of way, as in SUMO's own program."""
     return next((phase[nth] for phase in phases if phase[nth] in GREEN), "g")
 
 
 def _colour(letters: list[str]) -> carla.TrafficLightState:
-    """What a head shows when its links show these letters: green where any of them is."""
+    """Return what a head shows when its links show these letters: green where any of them is."""
     seen = {_letter(letter) for letter in letters}
     if "G" in seen:
         return carla.TrafficLightState.Green

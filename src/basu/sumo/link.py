@@ -137,7 +137,7 @@ def _is_too_old(version: str) -> bool:
 
 
 def _offset_m(network: Path) -> tuple[float, float]:
-    """What the network added to the map's x and y.
+    """Return what the network added to the map's x and y.
 
     Raises:
         UserError: the file is not here, or is no network.
@@ -173,5 +173,5 @@ def _reason(error: Exception, config: Path) -> str:
 
 
 def _text(error: Exception) -> str:
-    """What SUMO said, in one line."""
+    """Return what SUMO said, in one line."""
     return " ".join(str(error).split()) or type(error).__name__

@@ -154,12 +154,12 @@ class Mirrors:
                     person.remove(name)
 
     def _street(self) -> str:
-        """An edge to begin on; the first move takes the actor away from it."""
+        """Return an edge to begin on; the first move takes the actor away from it."""
         edges: tuple[str, ...] = self._link.api.edge.getIDList()
         return next(edge for edge in edges if not edge.startswith(":"))
 
     def _pavement(self) -> str | None:
-        """An edge that people may use; None in a network without any."""
+        """Return an edge that people may use; None in a network without any."""
         if not self._has_looked:
             self._has_looked = True
             api = self._link.api
@@ -172,5 +172,5 @@ class Mirrors:
 
 
 def _name(actor_id: int) -> str:
-    """The id of an actor of CARLA in SUMO."""
+    """Return the id of an actor of CARLA in SUMO."""
     return f"{MIRROR}{actor_id}"

@@ -56,7 +56,7 @@ class Models:
         self._colours: dict[str, tuple[str, ...]] = {}
 
     def of(self, kind: str, vehicle_class: str, length_m: float) -> Model:
-        """The blueprint of a type: of its name, else the stand-in of its class that is most alike in length.
+        """Return the blueprint of a type: of its name, else the stand-in of its class that is most alike in length.
 
         Raises:
             UserError: no blueprint is of such a class.
@@ -66,7 +66,7 @@ class Models:
         return self._known[kind]
 
     def walker(self, number: int) -> str:
-        """The blueprint of the person of a number; neighbours in number look different.
+        """Return the blueprint of the person of a number; neighbours in number look different.
 
         Raises:
             UserError: the simulator has no walkers.
@@ -76,7 +76,7 @@ class Models:
         return self._walkers[number * WALKER_STRIDE % len(self._walkers)]
 
     def colours_of(self, blueprint: str) -> tuple[str, ...]:
-        """The colours that are recommended for a blueprint; none for one without colours."""
+        """Return the colours that are recommended for a blueprint; none for one without colours."""
         if blueprint not in self._colours:
             found = self._library.find(blueprint)
             has_any = found.has_attribute("color")

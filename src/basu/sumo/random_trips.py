@@ -88,7 +88,7 @@ class RandomTrips:
 
 
 def _mix_or_default(link: Link) -> str:
-    """The mix of types, which SUMO does not list among its types, where the scenario has it."""
+    """Return the mix of types, which SUMO does not list among its types, where the scenario has it."""
     try:
         link.api.vehicle.add("probe", "", typeID=MIX, depart="1e6")
     except Exception:  # noqa: BLE001 - SUMO's error where there is no such distribution; its type differs by link

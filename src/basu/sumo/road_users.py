@@ -89,7 +89,7 @@ class Vehicles:
         return RoadUser(look, self._sideways.shown(name, pose), _lamps(state[SIGNALS]), 0.0)
 
     def _look(self, name: str) -> Look:
-        """What is known of a vehicle; says once of each type that a stand-in shows it."""
+        """Return what is known of a vehicle; says once of each type that a stand-in shows it."""
         vehicle = self._link.api.vehicle
         kind, length_m = vehicle.getTypeID(name), vehicle.getLength(name)
         model = self._models.of(kind, vehicle.getVehicleClass(name), length_m)
@@ -113,7 +113,7 @@ class People:
         self.departed = self.most = self.present = 0
 
     def read(self) -> dict[str, RoadUser]:
-        """All persons on foot, by their names, in the order of the names."""
+        """Return all persons on foot, by their names, in the order of the names."""
         api = self._link.api
         for name in sorted(api.simulation.getDepartedPersonIDList()):
             if not name.startswith(MIRROR):
@@ -144,7 +144,7 @@ class People:
         return RoadUser(self._looks[name], pose, 0, speed_mps)
 
     def _place_beside(self, name: str, at: tuple[float, float, float]) -> tuple[float, float, float] | None:
-        """Where a person that waits for a ride stands on the pavement; None for any other person.
+        """Return where a person that waits for a ride stands on the pavement; None for any other person.
 
         SUMO's own place for it, ``at``, is the edge of the lane that it waits at, in the way of what drives there. The
         place on the pavement lies as far along the street.
@@ -166,7 +166,7 @@ class People:
 
 
 def for_people(allowed: tuple[str, ...], disallowed: tuple[str, ...]) -> bool:
-    """Whether people may use a lane with these permissions."""
+    """Return whether people may use a lane with these permissions."""
     return "pedestrian" in allowed if allowed else "pedestrian" not in disallowed and "all" not in disallowed
 
 

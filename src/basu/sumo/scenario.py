@@ -44,7 +44,7 @@ ANY = Wanted()
 
 
 def named_folder(folder: str, town: str, beside: Path | None) -> Path | None:
-    """The folder that an agent's ``config()`` names; None where it is the town's own, still to be made.
+    """Return the folder that an agent's ``config()`` names; None where it is the town's own, still to be made.
 
     Raises:
         UserError: it is not there, and bears another name than the town.
@@ -62,7 +62,7 @@ def named_folder(folder: str, town: str, beside: Path | None) -> Path | None:
 
 
 def config_in(folder: Path, *, is_random: bool) -> Path:
-    """The one configuration of a folder; the one without a demand for random trips.
+    """Return the one configuration of a folder; the one without a demand for random trips.
 
     Raises:
         UserError: it has none, or several.
@@ -112,7 +112,7 @@ def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str], wanted:
 
 
 def _stops_xml(stops: Sequence[RouteStop]) -> bytes:
-    """The stops as a route file has them."""
+    """Return the stops as a route file has them."""
     root = ET.Element("routes")
     for stop in stops:
         ET.SubElement(root, "stop", {"id": stop.id, "name": stop.name, "x": f"{stop.x_m!r}", "y": f"{stop.y_m!r}"})
@@ -129,6 +129,6 @@ def _make(map_file: Path, folder: Path, options: Sequence[str], linden: Sequence
 
 
 def _cache() -> Path:
-    """Where scenario folders are kept between runs."""
+    """Return where scenario folders are kept between runs."""
     given = os.environ.get("XDG_CACHE_HOME")
     return (Path(given) if given else Path.home() / ".cache") / "basu" / "sumo"

@@ -91,8 +91,8 @@ def manifest(stage: Path, source: bytes, lanelet_map: LaneletMap) -> bytes:
     projection = projection_of(lanelet_map.geo_reference)
     origin: dict[str, Any] | None = None
     if projection is not None:
-        latitude, longitude = projection.degrees(np.zeros(1), np.zeros(1))
-        origin = {"latitude_deg": round(float(latitude[0]), 9), "longitude_deg": round(float(longitude[0]), 9)}
+        latitude, longitude = projection.degrees(0.0, 0.0)
+        origin = {"latitude_deg": round(latitude, 9), "longitude_deg": round(longitude, 9)}
     files = sorted(path for path in stage.rglob("*") if path.is_file() and path.name != MANIFEST)
     return (
         json.dumps(

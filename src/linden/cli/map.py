@@ -14,7 +14,7 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     actions = maps.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for name, (add_arguments, text) in _COMMANDS.items():
         parser = actions.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        parser.set_defaults(command=later(f"linden.cli.map_{name}:run", "maps" if name == "build" else ""))
+        parser.set_defaults(command=later(f"linden.cli.map_{name}:run", "maps"))
         add_arguments(parser)
 
 

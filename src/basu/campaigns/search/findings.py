@@ -27,7 +27,6 @@ SURE, MAY = 0.82, 0.18  # probabilities of the failing side between which the bo
 # Laplace's approximation is too careful: between 97.5 and 2.5 % lies most of the space. On a circle, a band and a wave
 # with 40 to 120 drives these levels hold 95 % of the boundary's length in the mean, at the least 83 %.
 SPACE_BITS = 12  # 4,096 points on which shares of the space are computed
-THIRDS = ("lower", "middle", "upper")
 COLUMNS = ["number", "identity", "judged", "success", "severity", "fault"]
 
 

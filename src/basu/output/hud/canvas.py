@@ -37,7 +37,7 @@ class Canvas:
 
     @contextlib.contextmanager
     def smoothly(self) -> Iterator[None]:
-        """What is drawn in here has smooth edges: it is drawn twice as large, and made smaller at the end."""
+        """Give what is drawn inside smooth edges: it is drawn twice as large, and made smaller at the end."""
         window, self._zoom = self._surface, 2
         self._surface = self._pygame.Surface((2 * self.size[0], 2 * self.size[1]))
         try:
@@ -110,7 +110,7 @@ class Canvas:
         self._pygame.display.flip()
 
     def png(self) -> bytes:
-        """What is drawn, as a file's content."""
+        """Return what is drawn, as a file's content."""
         buffer = io.BytesIO()
         self._pygame.image.save(self._surface, buffer, "hud.png")
         return buffer.getvalue()

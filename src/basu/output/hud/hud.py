@@ -194,7 +194,7 @@ class Hud(BaseManager):
         canvas.show()
 
     def _around(self, frame: Frame, rows: list[tuple[float, ...]], now_s: float) -> Around:
-        """What the window keeps for the panel."""
+        """Return what the window keeps for the panel."""
         ego = frame.ego
         if self._setting is None or now_s >= self._setting_next_s:
             self._setting, self._setting_next_s = setting_of(self._run, self._live), now_s + SETTING_EVERY_S
@@ -207,7 +207,7 @@ class Hud(BaseManager):
         )
 
     def _body(self, row: tuple[float, ...]) -> Body:
-        """A neighbour's row as what is drawn."""
+        """Return a neighbour's row as what is drawn."""
         _, actor_id, x_m, y_m, _, yaw_rad, *_ = row
         length_m, width_m = self._neighbours.sizes[int(actor_id)]
         walks = self._neighbours.met[int(actor_id)].startswith("walker.")

@@ -42,7 +42,7 @@ class Notices:
         self._lines = [*self._lines, Notice(text, now_s, bad)][-LINES:]
 
     def shown(self, now_s: float) -> list[tuple[Notice, float]]:
-        """What is to be seen, the oldest first, with how clearly: 1 at first, 0 when it is gone."""
+        """Return what is to be seen, the oldest first, with how clearly: 1 at first, 0 when it is gone."""
         return [(line, 1.0 - age) for line in self._lines if (age := (now_s - line.since_s) / FADE_S) < 1.0]
 
 
@@ -62,7 +62,7 @@ class Judgement(NamedTuple):
         return window
 
     def tally(self) -> list[str]:
-        """What was done wrong and how often, in words."""
+        """Return what was done wrong and how often, in words."""
         return [f"{number} x {kind.value.replace('_', ' ')}" for kind, number in counts(self.found).items()]
 
 
@@ -90,6 +90,6 @@ class Judge:
 
 
 def _contacts(metrics: MetricsManager) -> tuple[tuple[int, float], ...]:
-    """The latest messages of the collision sensor."""
+    """Return the latest messages of the collision sensor."""
     latest = metrics.contacts_since(metrics.ticks - WINDOW_TICKS)
     return tuple((event.tick, float(np.linalg.norm(event.impulse_ns))) for event in latest)

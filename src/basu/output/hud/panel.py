@@ -165,14 +165,14 @@ class Panel:
 
 
 def driver_word(shown: Readings) -> tuple[str, Colour]:
-    """The driver, and its colour."""
+    """Return a word for the driver, and its colour."""
     if shown.manual:
         return "MANUAL", YELLOW
     return ("AUTOPILOT", BLUE) if shown.autopilot else ("AGENT", GREEN)
 
 
 def times(factor: float) -> str:
-    """A factor with two figures or so."""
+    """Return a factor with two figures or so."""
     return f"{factor:.2f}x" if factor < 1.0 else f"{factor:.1f}x"
 
 

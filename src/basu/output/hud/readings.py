@@ -142,12 +142,12 @@ def heading_deg(yaw_rad: float) -> float:
 
 
 def compass_point(degrees: float) -> str:
-    """The nearest of eight."""
+    """Return the nearest of the eight points of the compass."""
     return POINTS[round(degrees / 45.0) % 8]
 
 
 def felt(ego: Ego) -> Inertial:
-    """What an ideal IMU on a level vehicle would read."""
+    """Return what an ideal IMU on a level vehicle would read."""
     cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
     ahead = ego.acceleration_x_mps2 * cos + ego.acceleration_y_mps2 * sin
     right = ego.acceleration_y_mps2 * cos - ego.acceleration_x_mps2 * sin
@@ -206,7 +206,7 @@ def true_latitude_deg(carla_map: carla.Map, latitude_deg: float, x_m: float, y_m
 
 
 def _fix(run: Run, live: Live, ego: Ego) -> Fix:
-    """The agent's GNSS where it has one, else where the map says the vehicle is."""
+    """Return the agent's GNSS where it has one, else where the map says the vehicle is."""
     for _, measured in live.sensors.data.values():
         if isinstance(measured, carla.GnssMeasurement):
             return fix_of(run.carla_map, measured, measured.transform.location)
@@ -221,7 +221,7 @@ def fix_of(carla_map: carla.Map, measured: carla.GnssMeasurement | carla.GeoLoca
 
 
 def _inertial(live: Live, ego: Ego) -> Inertial:
-    """The agent's IMU where it has one, else what one would read."""
+    """Return the agent's IMU where it has one, else what one would read."""
     for _, measured in live.sensors.data.values():
         if isinstance(measured, carla.IMUMeasurement):
             force, spin = measured.accelerometer, measured.gyroscope

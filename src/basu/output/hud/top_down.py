@@ -117,7 +117,7 @@ class TopDown:
                 _draw_cross(canvas, view, mark.x_m, mark.y_m)
 
     def _in_sight(self, canvas: Canvas, view: View) -> list[NDArray[np.float64]]:
-        """The outlines of those pieces of lanes that may be in the window, in its pixels."""
+        """Return the outlines of those pieces of lanes that may be in the window, in its pixels."""
         middles, reaches = view.pixels(self._lanes.middles_m), self._lanes.reaches_m * view.scale
         off = np.abs(middles - np.array(canvas.size) / 2) - np.array(canvas.size) / 2
         chosen = [self._lanes.outlines_m[i] for i in np.flatnonzero(off.max(axis=1) < reaches)]
@@ -149,7 +149,7 @@ class TopDown:
 
 
 def lanes_of(carla_map: carla.Map) -> Lanes:
-    """All driving lanes of a map, junctions first, so that roads lie over them."""
+    """Return all driving lanes of a map, junctions first, so that roads lie over them."""
     by_lane: dict[tuple[int, int, int], list[carla.Waypoint]] = {}
     for waypoint in carla_map.generate_waypoints(SPACING_M):
         by_lane.setdefault((waypoint.road_id, waypoint.section_id, waypoint.lane_id), []).append(waypoint)

@@ -1,30 +1,20 @@
-"""The comparison of runs: the scores of table 5.1 of the thesis, a column for each metric, and paths side by side."""
+"""The comparison of runs: the scores of table 5.1 of the thesis, a column for each metric, and what sets runs apart."""
 
 from __future__ import annotations
 
-import io
-import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 
-from basu.files import write_bytes
 from basu.metrics.registry import Column, built_in
 from basu.output.report.console import score_cell, why_not_comparable, written
 from basu.output.report.streets import bounds_of, union
 from basu.output.report.templates import DASH, figure
-from basu.output.report.templates import figure as figure_text
 from basu.output.report.tracks import apart, titled, track_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from matplotlib.axes import Axes
 
     from basu.metrics.result import Result
     from basu.output.report.documents import RunRecord
@@ -35,7 +25,7 @@ if TYPE_CHECKING:
 COMPARED = frozenset({"basu", "carla"})  # programs of which another version may change a drive
 
 
-class Row(NamedTuple):
+class ComparedRun(NamedTuple):
     """What is compared of one run."""
 
     agent: str
@@ -46,18 +36,18 @@ class Row(NamedTuple):
     track: str  # with a mark where no gate stood before the agent; empty where it is not known
 
     def cell(self, head: str) -> str:
-        """The text under a head; a dash where this run does not have it."""
+        """Return the text under a head; a dash where this run does not have it."""
         return next((column.text for column in self.columns if column.head == head), DASH)
 
 
-def heads(found: Sequence[Row]) -> tuple[str, ...]:
-    """The heads of all rows, in the order in which they first occur; how a run ended comes last."""
+def heads(found: Sequence[ComparedRun]) -> tuple[str, ...]:
+    """Return the heads of all rows, in the order in which they first occur; how a run ended comes last."""
     named = dict.fromkeys(column.head for row in found for column in row.columns if column.head != "ended")
     return (*named, "ended")
 
 
-def rows(runs: Sequence[RunRecord]) -> list[Row]:
-    """A row for each run; agents that appear twice are numbered."""
+def rows(runs: Sequence[RunRecord]) -> list[ComparedRun]:
+    """Return a row for each run; agents that appear twice are numbered."""
     names = Counter(run.agent for run in runs)
     seen: Counter[str] = Counter()
     found = []
@@ -68,8 +58,8 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
     return found
 
 
-def row(agent: str, result: Result) -> Row:
-    """The row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
+def row(agent: str, result: Result) -> ComparedRun:
+    """Return the row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
     scores = result.scores._asdict() if result.scores is not None else {}
     track = track_of(result.meta.get("access"))
     columns = [
@@ -83,26 +73,28 @@ def row(agent: str, result: Result) -> Row:
         Column("result", result.success.word),
         Column("ended", result.outcome.status.value),
     ]
-    return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns), track)
+    return ComparedRun(
+        agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns), track
+    )
 
 
-def tables(found: Sequence[Row]) -> dict[str, list[Row]]:
+def tables(found: Sequence[ComparedRun]) -> dict[str, list[ComparedRun]]:
     """Return the rows of each track by its name: no table has scores of different tracks."""
-    groups: dict[str, list[Row]] = {}
+    groups: dict[str, list[ComparedRun]] = {}
     for each in found:
         groups.setdefault(each.track, []).append(each)
     return groups
 
 
-def text(found: Sequence[Row]) -> str:
-    """The tables for a console, one for each track, which stands above it where there are several."""
+def text(found: Sequence[ComparedRun]) -> str:
+    """Return the tables for a console, one for each track, which stands above it where there are several."""
     groups = tables(found)
     if len(groups) == 1:
         return _table(found)
     return "\n\n".join(f"{titled(track)}\n{_table(group)}" for track, group in groups.items())
 
 
-def _table(found: Sequence[Row]) -> str:
+def _table(found: Sequence[ComparedRun]) -> str:
     """One table: heads in two lines, numbers to the right."""
     named = heads(found)
     lines = [[head.rpartition(" ")[0] for head in named], [head.rpartition(" ")[2] for head in named]]
@@ -119,14 +111,14 @@ def _table(found: Sequence[Row]) -> str:
 
 
 def reasons(runs: Sequence[RunRecord]) -> list[str]:
-    """Why each run that did not pass did not, a sentence for each run."""
+    """Return why each run that did not pass did not, a sentence for each run."""
     names = [each.agent for each in rows(runs)]
     asked = [run.result.success for run in runs]
     return [f"{name} {said.sentence}" for name, said in zip(names, asked, strict=True) if not said.passed]
 
 
 def remarks(runs: Sequence[RunRecord]) -> list[str]:
-    """What has to be said before these runs are compared: other routes, other rules."""
+    """Return what has to be said before these runs are compared: other routes, other rules."""
     found = []
     routes = {f"{run.result.meta['route']} of {run.result.meta['town']}" for run in runs if run.result.meta}
     if len(routes) > 1 or not on_one_route(runs):
@@ -184,75 +176,23 @@ def _conditions_of(meta: Mapping[str, Any] | None) -> dict[str, str]:
 
 
 def on_one_route(runs: Sequence[RunRecord]) -> bool:
-    """Whether all that was driven was driven on one plan."""
+    """Return whether all that was driven was driven on one plan."""
     plans = [history.facts.route.points_m for history in histories(runs)]
     return all(plan.shape == plans[0].shape and np.allclose(plan, plans[0]) for plan in plans[1:])
 
 
 def histories(runs: Sequence[RunRecord]) -> list[History]:
-    """The records of those runs in which something was driven."""
+    """Return the records of those runs in which something was driven."""
     return [run.history for run in runs if run.history is not None]
 
 
 def shared_bounds(runs: Sequence[RunRecord]) -> Bounds | None:
-    """The map that shows all of them; None where they are on different routes, or nothing was driven."""
+    """Return the map that shows all of them; None where they are on different routes, or nothing was driven."""
     driven = histories(runs)
     return union([bounds_of(history) for history in driven]) if driven and on_one_route(runs) else None
 
 
 def _rules(scoring: Mapping[str, Any]) -> tuple[object, ...]:
-    """What made the scores, as something that can be compared."""
+    """Return what made the scores, as something that can be compared."""
     rest = sorted((key, round(value, 9)) for key, value in scoring.items() if isinstance(value, float | int))
     return (*sorted(scoring["penalties"].items()), *rest)
-
-
-MOST_COLUMNS, SIDE_INCHES, DPI = 4, 4.2, 110
-STREET, PLANNED, DRIVEN = "#d9d9d9", "#3182bd", "#a33b00"
-
-
-def draw(path: Path, runs: Sequence[RunRecord]) -> None:
-    """Write the picture; runs on one route share its frame.
-
-    Raises:
-        UserError: the disk is full or the folder cannot be figure_text.
-    """
-    shared = shared_bounds(runs)
-    columns = min(MOST_COLUMNS, len(runs))
-    lines = math.ceil(len(runs) / columns)
-    figure = Figure(figsize=(SIDE_INCHES * columns, (SIDE_INCHES + 1.0) * lines), layout="constrained")
-    all_axes = figure.subplots(lines, columns, squeeze=False).flatten()
-    for axes in all_axes[len(runs) :]:
-        axes.set_axis_off()
-    for axes, run, row in zip(all_axes, runs, rows(runs), strict=False):
-        track = f", {titled(row.track)}" if row.track else ""
-        axes.set_title(f"{row.agent}{track}: driving score {figure_text(row.driving)}", fontsize=11, parse_math=False)
-        if run.history is None:
-            axes.text(0.5, 0.5, "nothing was driven", ha="center", transform=axes.transAxes)
-            axes.set_axis_off()
-        else:
-            _paths(axes, run, shared or bounds_of(run.history))
-    handles, labels = next((axes.get_legend_handles_labels() for axes in all_axes if axes.lines), ([], []))
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
-    buffer = io.BytesIO()
-    with mpl.rc_context({"savefig.bbox": "tight"}):
-        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
-    write_bytes(path, buffer.getvalue())
-
-
-def _paths(axes: Axes, run: RunRecord, bounds: Bounds) -> None:
-    """One run on its streets."""
-    assert run.history is not None  # draw asks
-    plan, frames = run.history.facts.route.points_m, run.history.frames
-    axes.add_collection(LineCollection(run.streets, colors=STREET, linewidths=2.0, zorder=1))
-    axes.plot(plan[:, 0], plan[:, 1], color=PLANNED, linewidth=5.0, alpha=0.45, label="planned", zorder=2)
-    axes.plot(frames["x_m"], frames["y_m"], color=DRIVEN, linewidth=1.4, label="driven", zorder=3)
-    axes.plot(frames["x_m"][-1], frames["y_m"][-1], "s", color=DRIVEN, markersize=6, label="end of the drive", zorder=5)
-    for number, infraction in enumerate(run.result.infractions):
-        label = "infraction" if number == 0 else None
-        axes.plot(infraction.x_m, infraction.y_m, "X", color="black", markersize=8, label=label, zorder=6)
-    for name, end in (("A", plan[0]), ("B", plan[-1])):
-        axes.annotate(name, end[:2], fontweight="bold", xytext=(6, 6), textcoords="offset points", zorder=7)
-    axes.set_xlim(bounds.west_m, bounds.east_m)
-    axes.set_ylim(bounds.south_m, bounds.north_m)  # CARLA's y points south: north is up
-    axes.set_aspect("equal")
-    axes.tick_params(labelsize=7)

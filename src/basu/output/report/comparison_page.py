@@ -12,7 +12,6 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
 from basu.output.report.comparison import (
-    draw,
     heads,
     histories,
     reasons,
@@ -22,9 +21,10 @@ from basu.output.report.comparison import (
     tables,
     text,
 )
+from basu.output.report.comparison_picture import draw
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
-from basu.output.report.plots.chart import Line, chart
+from basu.output.report.plots.chart import Curve, chart
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
 from basu.output.report.streets import bounds_of
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.comparison import Row
+    from basu.output.report.comparison import ComparedRun
     from basu.output.report.documents import RunRecord
     from basu.output.report.streets import Bounds
 
@@ -45,7 +45,7 @@ MOST_BESIDE = 4  # runs that stand as columns, so that the table fits a phone
 
 
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
-    """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
+    """Return the page, to lie in the folder ``beside``; ``more`` stands below the table."""
     compared, shared, axes = rows(runs), shared_bounds(runs), _axes(runs)
     reports = {row.agent: folder / REPORT_FILE for row, folder in zip(compared, folders, strict=True)}
     groups = tables(compared)
@@ -72,8 +72,8 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
     return page("Comparison of runs", body)
 
 
-def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
-    """The table of one track; ``reports`` are the pages of the runs by agent."""
+def _scores(found: Sequence[ComparedRun], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
+    """Return the table of one track; ``reports`` are the pages of the runs by agent."""
     named = heads(found)
     return {
         "title": title,
@@ -90,7 +90,7 @@ def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, tit
 
 
 def _address(report: Path, beside: Path) -> str:
-    """The way from the comparison to a report, as a browser writes it."""
+    """Return the way from the comparison to a report, as a browser writes it."""
     return quote(os.path.relpath(report.resolve(), beside.resolve()))
 
 
@@ -113,7 +113,7 @@ def _pictures(run: RunRecord, shared: Bounds | None, axes: _Axes) -> list[Elemen
     if run.history is None:
         return []
     felt = signals(run.history)
-    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    curves = [Curve("driven", felt.speed_mps, "first"), Curve("limit", felt.limit_mps, "limit", steps=True)]
     bounds = shared or bounds_of(run.history)
     places = [
         (events.symbol(found.kind.value, str(number)), found.x_m, found.y_m)
@@ -152,7 +152,7 @@ def compare(folders: Sequence[Path], output: Path, more: Sequence[Element] = ())
 
 
 def compared(folders: Sequence[Path]) -> str:
-    """The table of a comparison with its remarks; nothing is written.
+    """Return the table of a comparison with its remarks; nothing is written.
 
     Raises:
         UserError: a folder is no run's.

@@ -23,7 +23,7 @@ BY_HAND = "driven by hand"
 
 
 def table(result: Result) -> str:
-    """A result as lines of text."""
+    """Return a result as lines of text."""
     lines = [f"{result.outcome.status.value}: {result.outcome.message}"]
     if result.scores is None:
         return "\n".join([*lines, "nothing was driven, so there is no score"])
@@ -59,7 +59,7 @@ def score_cell(result: Result) -> str:
 
 
 def is_by_hand(result: Result) -> bool:
-    """Whether a person drove a part of the way."""
+    """Return whether a person drove a part of the way."""
     return bool((result.metrics.get("disengagements") or {}).get("manual_m"))
 
 
@@ -86,7 +86,7 @@ def why_not_comparable(result: Result) -> str:
 
 
 def _access(result: Result) -> list[str]:
-    """The track, and how many calls the gate refused; nothing for a record that was scored again."""
+    """Return the track, and how many calls the gate refused; nothing for a record that was scored again."""
     if result.track is None:
         return []
     refused: Mapping[str, int] = result.meta["access"]["refused"]
@@ -112,20 +112,20 @@ def judgement(result: Result) -> list[str]:
 
 
 def written(value: Any, unit: str, digits: int) -> str:  # noqa: ANN401 - the value of a user's metric
-    """The value of a user's metric as people read it."""
+    """Return the value of a user's metric as people read it."""
     if value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
         return shown(value, unit, digits)
     return str(value)
 
 
 def _infraction(found: Evidence) -> list[str]:
-    """An infraction, and for a collision the responsibility below it."""
+    """Return an infraction, and for a collision the responsibility below it."""
     lines = [f"  {found.t_s:8.1f} s  {found.kind.value:<21} {found.detail}"]
     return lines if found.responsibility is None else [*lines, f"{'':36}{found.responsibility.sentence}"]
 
 
 def _simulated(meta: Mapping[str, Any]) -> list[str]:
-    """How long the run took; nothing for a record that was scored again."""
+    """Return how long the run took; nothing for a record that was scored again."""
     if "wall_s" not in meta:
         return []
     pace = f", {meta['simulated_s'] / meta['wall_s']:.2f}x real time" if meta["wall_s"] > 0.0 else ""
@@ -136,7 +136,7 @@ NOT_REACHED = "not reached"
 
 
 def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
-    """A line for all of them, and one for each: when, which, the verdict, and why."""
+    """Return a line for all of them, and one for each: when, which, the verdict, and why."""
     if not scenarios:
         return []
     reached = [row for row in scenarios if row["reached"]]
@@ -149,7 +149,7 @@ def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def verdict_word(row: dict[str, Any]) -> str:
-    """The verdict of a scenario in a word or two."""
+    """Return the verdict of a scenario in a word or two."""
     return NOT_REACHED if row["verdict"] is None else LOOKS[row["verdict"]].word
 
 

@@ -36,12 +36,12 @@ DRAFTS = ".*.part"  # the names of drafts, for Path.glob
 
 
 def run_name(started: datetime, agent: str, route: str) -> str:
-    """What the folder of a run by itself is called."""
+    """Return what the folder of a run by itself is called."""
     return f"{started:%Y-%m-%dT%H-%M-%S}-{plain(agent)}-{plain(route)}"
 
 
 def make_draft(output: Path, name: str) -> Path:
-    """A new draft for the folder ``name`` in ``output``.
+    """Return a new draft for the folder ``name`` in ``output``.
 
     Raises:
         UserError: it cannot be made.
@@ -101,7 +101,7 @@ def write_json(path: Path, document: dict[str, Any]) -> None:
 
 
 def plain(name: str) -> str:
-    """A name that every file system takes."""
+    """Return a name that every file system takes."""
     return re.sub(r"[^A-Za-z0-9._-]+", "_", name).strip("._") or "_"
 
 
@@ -121,7 +121,7 @@ AN = {
 
 
 def read_result(folder: Path) -> dict[str, Any]:
-    """The result of a run, checked.
+    """Return the result of a run, checked.
 
     Raises:
         UserError: there is none, or it is not what a result should be.
@@ -158,7 +158,7 @@ def read_schema(name: str) -> dict[str, Any]:
 
 
 def mistakes(document: object, schema: Mapping[str, Any]) -> Iterator[str]:
-    """What is wrong with a document, each place in a sentence; nothing where it is as the schema says."""
+    """Yield what is wrong with a document, each place in a sentence; nothing where it is as the schema says."""
     import jsonschema  # noqa: PLC0415 - a tenth of a second, and a drive reads no document
 
     validator: Validator = jsonschema.Draft202012Validator(schema)
@@ -179,7 +179,7 @@ def _sentence(error: jsonschema.ValidationError) -> str:
 
 
 def _asked(error: jsonschema.ValidationError) -> str:
-    """What a value must be, in words."""
+    """Return what a value must be, in words."""
     allowed = error.validator_value
     if error.validator == "type":
         return " or ".join(AN.get(name, name) for name in ([allowed] if isinstance(allowed, str) else allowed))
@@ -257,7 +257,7 @@ def _ticks(document: object) -> Iterator[object]:
 
 
 def _document(path: Path) -> dict[str, Any]:
-    """A JSON object in a file."""
+    """Return a JSON object in a file."""
     document = read_json(path, "the run's", "name a folder that `basu run` has left, or drive the run again")
     if not isinstance(document, dict):
         raise UserError(f"{path} holds no JSON object; the run has to be driven again")

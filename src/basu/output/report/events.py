@@ -42,7 +42,7 @@ class Event:
 
 
 def events(result: Result) -> tuple[Event, ...]:
-    """All of a result: first the infractions, then the rest, each in order of time."""
+    """Return all of a result: first the infractions, then the rest, each in order of time."""
     penalties = result.scoring["penalties"]
     scored = [
         _event(str(number), f"infraction-{number}", penalties.get(found.kind.value, 1.0), row_of(found))
@@ -55,7 +55,7 @@ def events(result: Result) -> tuple[Event, ...]:
 
 
 def _event(label: str, anchor: str, factor: float | None, row: Mapping[str, Any]) -> Event:
-    """A row of a result."""
+    """Return a row of a result."""
     return Event(
         label=label,
         anchor=anchor,
@@ -95,14 +95,14 @@ SHAPES = {3: "triangle", 4: "square", 5: "pentagon", 6: "hexagon", 8: "octagon"}
 
 
 def shape(kind: str) -> str:
-    """What the mark of a kind looks like, in a word."""
+    """Return what the mark of a kind looks like, in a word."""
     if kind == "collision_static":
         return "diamond"
     return SHAPES[CORNERS[kind][0]] if kind in CORNERS else "circle"
 
 
 def symbol(kind: str, label: str = "", *, scored: bool = True) -> Element:
-    """The mark of a kind with its label in it; hollow where it does not enter the score."""
+    """Return the mark of a kind with its label in it; hollow where it does not enter the score."""
     if kind in CORNERS:
         corners, turn_deg = CORNERS[kind]
         radius = {3: 13.0, 4: 12.5}.get(corners, 11.0)
@@ -118,7 +118,7 @@ def symbol(kind: str, label: str = "", *, scored: bool = True) -> Element:
 
 
 def link(event: Event, style: str) -> Element:
-    """A mark that opens the evidence of what it marks; ``style`` places it."""
+    """Return a mark that opens the evidence of what it marks; ``style`` places it."""
     return e(
         "a",
         symbol(event.kind, event.label, scored=event.factor is not None),

@@ -19,7 +19,7 @@ NAMES = {"driving": "driving score", "infraction": "  infractions", "path_follow
 
 
 def row(document: Mapping[str, Any], *, number: int, repetition: int, folder: str) -> dict[str, Any]:
-    """What a series keeps of a run's result."""
+    """Return what a series keeps of a run's result."""
     reported, meta = document["reported"] or {}, document["meta"]
     return {
         "number": number,
@@ -80,7 +80,7 @@ def totals(rows: Sequence[Mapping[str, Any]], planned: int) -> dict[str, Any]:
 
 
 def series_table(name: str, document: Mapping[str, Any]) -> str:
-    """A series as lines of text."""
+    """Return a series as lines of text."""
     total = document["totals"]
     lines = [f"series {name}: {total['done']} of {total['planned']} runs done"]
     if not total["done"]:
@@ -126,6 +126,6 @@ def _line(name: str, spread: Mapping[str, float]) -> str:
 
 
 def _often(found: Mapping[str, Any]) -> str:
-    """How often a kind of infraction happened."""
+    """Return how often a kind of infraction happened."""
     rate = "" if found["per_km"] is None else f", {found['per_km']:.2f} a km"
     return f"{found['number']}{rate}"

@@ -48,7 +48,7 @@ class Bounds(NamedTuple):
 
 
 def bounds_of(history: History, margin_m: float = MARGIN_M) -> Bounds:
-    """What a map of this run has to show: the plan and the drive, with a margin."""
+    """Return what a map of this run has to show: the plan and the drive, with a margin."""
     plan, frames = history.facts.route.points_m, history.frames
     shown = np.concatenate([plan[:, :2], on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))])
     west_m, north_m = shown.min(axis=0).tolist()
@@ -62,7 +62,7 @@ def on_the_map(points_m: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def union(found: Sequence[Bounds]) -> Bounds:
-    """The rectangle around all of them."""
+    """Return the rectangle around all of them."""
     west_m, north_m, east_m, south_m = zip(*found, strict=True)
     return Bounds(min(west_m), min(north_m), max(east_m), max(south_m))
 
@@ -89,7 +89,7 @@ def write_streets(folder: Path, streets: Sequence[Line]) -> None:
 
 
 def read_streets(folder: Path) -> list[Line]:
-    """The lanes of a run folder; none where it is older than this file.
+    """Return the lanes of a run folder; none where it is older than this file.
 
     Raises:
         UserError: the file is not what it should be.

@@ -25,7 +25,7 @@ FORBIDDEN = re.compile("[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")
 
 
 def e(tag: str, *children: Element | str | None, **attributes: object) -> Element:
-    """An element. ``class_`` means class, ``stroke_width`` stroke-width; an attribute of None is left out."""
+    """Return an element. ``class_`` means class, ``stroke_width`` stroke-width; an attribute of None is left out."""
     element = Element(tag)
     for key, value in attributes.items():
         if value is not None:
@@ -46,28 +46,28 @@ def extended(element: Element, children: Iterable[Element | str | None]) -> Elem
 
 
 def words(name: str) -> str:
-    """A name as it stands in a file, as people write it."""
+    """Return a name as it stands in a file, as people write it."""
     return name.replace("_", " ")
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number as short as it can be at so many digits."""
+    """Return a number as short as it can be at so many digits."""
     text = f"{value:.{digits}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def figure(value: float | None, digits: int = 3) -> str:
-    """A number for people to compare: its digits kept, a dash where there is none."""
+    """Return a number for people to compare: its digits kept, a dash where there is none."""
     return DASH if value is None or not math.isfinite(value) else f"{value:.{digits}f}"
 
 
 def percent(share: float) -> str:
-    """A share as a length in CSS."""
+    """Return a share as a length in CSS."""
     return f"{number(100.0 * share, 3)}%"
 
 
 def html(element: Element) -> str:
-    """An element and all that is in it as HTML."""
+    """Return an element and all that is in it as HTML."""
     return tostring(element, encoding="unicode", method="html")
 
 
@@ -83,7 +83,7 @@ def _plain(text: str) -> str:
 
 @functools.cache
 def environment() -> jinja2.Environment:
-    """The environment; templates are named by their path in ``basu/output/report``, as ``templates/page.j2``."""
+    """Return the environment; templates are named by their path in ``basu/output/report``, as ``templates/page.j2``."""
     made = jinja2.Environment(
         loader=jinja2.PackageLoader("basu.output", "report"),
         autoescape=True,
@@ -100,12 +100,12 @@ def environment() -> jinja2.Environment:
 
 
 def render(template: str, **values: Any) -> Markup:  # noqa: ANN401 - whatever the template shows
-    """A template filled in; every name that it uses has to be among ``values``."""
+    """Return a template filled in; every name that it uses has to be among ``values``."""
     return Markup(environment().get_template(template).render(**values))  # noqa: S704 - the template has escaped it
 
 
 def drawn(element: Element | Markup | None) -> Markup:
-    """An element, or what another template made of one, as it stands in a page; nothing for None."""
+    """Return an element, or what another template made of one, as it stands in a page; nothing for None."""
     if element is None:
         return Markup("")
     if isinstance(element, Markup):

@@ -101,7 +101,7 @@ def show(recording: Any, sensor_id: str, type_id: str, measured: Any) -> None:  
 
 
 def picture(image: carla.Image, type_id: str) -> Any:  # noqa: ANN401 - an archetype of Rerun's
-    """A camera's picture: colours as JPEG, depth in m, tags as classes."""
+    """Return a camera's picture: colours as JPEG, depth in m, tags as classes."""
     bgra = np.frombuffer(image.raw_data, dtype=np.uint8).reshape(image.height, image.width, 4)
     if type_id.endswith("depth"):
         parts = bgra[:, :, :3].astype(np.uint32)
@@ -113,7 +113,7 @@ def picture(image: carla.Image, type_id: str) -> Any:  # noqa: ANN401 - an arche
 
 
 def cloud(measured: Any) -> Any:  # noqa: ANN401 - an archetype of Rerun's
-    """The points of a lidar or radar in its own frame; None of anything else."""
+    """Return the points of a lidar or radar in its own frame; None of anything else."""
     if isinstance(measured, carla.LidarMeasurement):
         rays = np.frombuffer(measured.raw_data, dtype="<f4").reshape(-1, 4)
         return rr.Points3D(shown(rays[:, :3]), colors=grey(rays[:, 3]), radii=SMALL)

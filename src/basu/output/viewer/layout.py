@@ -81,7 +81,7 @@ class Parts(NamedTuple):
 
 
 def layout(parts: Parts) -> Any:  # noqa: ANN401 - a blueprint of Rerun's
-    """The blueprint."""
+    """Return the arrangement of the viewer's windows."""
     world = rrb.Spatial3DView(
         origin="world",
         name="world: x east, y north, z up [m]",
@@ -102,7 +102,7 @@ def layout(parts: Parts) -> Any:  # noqa: ANN401 - a blueprint of Rerun's
 
 
 def _until_now() -> rrb.VisibleTimeRanges:
-    """What was shown before stays to be seen."""
+    """Return the range of time until now, so that what was shown before stays visible."""
     return rrb.VisibleTimeRanges(
         timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
     )

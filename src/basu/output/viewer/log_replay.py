@@ -63,7 +63,7 @@ def _pose(run: ActorArrays, index: int) -> Pose:
 
 
 def _driving(run: ActorArrays, index: int) -> entities.Driving:
-    """A recorder file has no limits."""
+    """Return the driving at a frame; a recorder file has no speed limits."""
     velocity, acceleration = run.velocity_mps[index].tolist(), run.acceleration_mps2[index].tolist()
     return entities.Driving(
         (velocity[0], velocity[1], velocity[2]),
@@ -76,7 +76,7 @@ def _driving(run: ActorArrays, index: int) -> entities.Driving:
 
 
 def _others(log: Log, runs: dict[int, ActorArrays]) -> dict[int, list[entities.Other]]:
-    """All actors but the hero, by frame."""
+    """Return all actors but the hero, by frame."""
     types = {actor.id: actor.type_id for actor in log.created}
     found: dict[int, list[entities.Other]] = {}
     for actor, run in runs.items():

@@ -71,7 +71,7 @@ def show_run(
 
 
 def _window(history: History, end: int, first: int) -> History:
-    """The frames from ``first`` until before ``end`` and the contacts in them; ticks count from ``first``."""
+    """Return the frames from ``first`` until before ``end`` and the contacts in them; ticks count from ``first``."""
     contacts = (contact for contact in history.collisions if first <= contact.tick < end)
     return replace(
         history,
@@ -97,7 +97,7 @@ def _driving(row: np.void) -> entities.Driving:
 
 
 def _others(history: History) -> dict[int, list[entities.Other]]:
-    """The actors nearby, by tick."""
+    """Return the actors nearby, by tick."""
     facts = history.facts
     found: dict[int, list[entities.Other]] = {}
     for row in history.others:

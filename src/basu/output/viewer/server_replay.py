@@ -62,7 +62,7 @@ def play(log: Log, where: Where, *, speed: float, progress: Progress) -> None:
 
 @contextlib.contextmanager
 def _simulator(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
-    """The simulator and its address."""
+    """Yield the simulator and its address."""
     if where.host is not None:
         yield connect(where.host, where.port, where.timeout_s), f"{where.host}:{where.port}"
         return
@@ -74,7 +74,7 @@ def _simulator(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
 
 
 def _begun(client: carla.Client, log: Log, hero: int) -> carla.World:
-    """The world in which the replay has begun."""
+    """Return the world in which the replay has begun."""
     try:
         client.replay_file(str(log.path.resolve()), 0.0, 0.0, hero)
         world = client.get_world()

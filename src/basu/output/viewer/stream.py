@@ -69,7 +69,7 @@ def close_stream(stream: Stream) -> None:
 
 
 def has_screen() -> bool:
-    """Whether there is a screen that a window could be on."""
+    """Return whether there is a screen that a window could be on."""
     if platform.system() == "Linux":
         return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     return True

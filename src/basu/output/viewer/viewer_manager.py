@@ -79,7 +79,7 @@ class ViewerManager(BaseManager):
         self._say(f"viewer            {RRD_FILE} in the result folder ({stream.said}); `rerun {RRD_FILE}` opens it")
 
     def _others(self, frame: Frame) -> list[entities.Other]:
-        """The actors nearby, from the record."""
+        """Return the actors nearby, from the record."""
         return [
             entities.Other(
                 int(actor_id),
@@ -108,7 +108,7 @@ class ViewerManager(BaseManager):
 
 
 def _vehicle(run: Run) -> Vehicle:
-    """The box of the vehicle under test as records have it."""
+    """Return the box of the vehicle under test as records have it."""
     box = run.vehicle.bounding_box
     return Vehicle(
         type_id=run.vehicle.type_id,

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import STRtree, box
 
 from linden.authoring.checks.finding import KERB_REACH_M, LAYER_M, OVERLAP_M, Finding, Severity, worst_of_each
 from linden.maps.opendrive.evaluate.pieces import F64, I64
@@ -11,7 +12,7 @@ from linden.maps.opendrive.mesh import RoadMesh, road_mesh
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
 
-_CELL_M = 12.0
+_AT_ONCE = 20_000  # triangles, for the memory that pairs need
 
 
 def overlaps(opendrive: OpenDrive) -> list[Finding]:
@@ -79,28 +80,16 @@ def _near_pairs(
     corners: F64, owner: NDArray[np.int32], group: NDArray[np.bool_], *, alike: bool
 ) -> Iterator[tuple[I64, I64]]:
     """Yield pairs of triangles of different owners with bounds that meet, at about the same height."""
-    lowest, highest = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
-    low, high = (np.floor(bound / _CELL_M).astype(np.int64) for bound in (lowest, highest))
-    span = high - low + 1
-    count = span[:, 0] * span[:, 1]
-    triangle = np.repeat(np.arange(len(corners)), count)
-    nth = np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
-    column, row = low[triangle, 0] + nth % span[triangle, 0], low[triangle, 1] + nth // span[triangle, 0]
-    order = np.lexsort((triangle, row, column))
-    changes = (np.diff(column[order]) != 0) | (np.diff(row[order]) != 0)
-    height = corners[:, :, 2].mean(axis=1)
-    for members in np.split(triangle[order], np.flatnonzero(changes) + 1):
-        if len(members) < 2 or (owner[members] == owner[members[0]]).all():
-            continue
-        yes, no = members[group[members]], members[~group[members]]
-        for these, those in ((yes, yes), (no, no)) if alike else ((yes, no),):
-            one, other = np.repeat(these, len(those)), np.tile(those, len(these))
-            kept = (owner[one] < owner[other]) if alike else (owner[one] != owner[other])
-            one, other = one[kept], other[kept]
-            kept = np.abs(height[one] - height[other]) < LAYER_M
-            kept &= ((lowest[one] < highest[other]) & (lowest[other] < highest[one])).all(axis=1)
-            if kept.any():
-                yield one[kept], other[kept]
+    height_m = corners[:, :, 2].mean(axis=1)
+    bounds = box(*corners[:, :, :2].min(axis=1).T, *corners[:, :, :2].max(axis=1).T)
+    tree = STRtree(bounds)
+    for start in range(0, len(bounds), _AT_ONCE):
+        one, other = tree.query(bounds[start : start + _AT_ONCE])
+        one += start
+        kept = (owner[one] < owner[other]) if alike else (owner[one] != owner[other])
+        kept &= (group[one] == group[other]) if alike else (group[one] & ~group[other])
+        kept &= np.abs(height_m[one] - height_m[other]) < LAYER_M
+        yield one[kept], other[kept]
 
 
 def _depth_m(first: F64, second: F64) -> F64:

@@ -1,11 +1,23 @@
 """Intersection areas: a ring of nodes around each junction, along the ends of its legs and the kerbs between them."""
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import (
+    LinearRing,
+    Polygon,
+    contains_xy,
+    convex_hull,
+    distance,
+    get_coordinates,
+    linestrings,
+    make_valid,
+    multipoints,
+    orient_polygons,
+    points,
+)
 
 from linden.authoring.lanelet2.model import Bounds, LaneletMap
 from linden.authoring.lanelet2.overlap import overlap_share
@@ -15,7 +27,6 @@ _KERB_REACH_M = 5.0
 """Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""
 _WHOLE = 0.991
 """The share of a lanelet that has to lie inside; the validator wants 0.99."""
-_SLICES = 256  # of a lanelet, so that its share is exact to 0.001
 _NEAR_M = 0.01
 """So little out of an area is less than the validator's hundredth of any lane."""
 _TOUCH_M = 1e-3
@@ -107,76 +118,35 @@ def _places(target: LaneletMap, ring: tuple[int, ...]) -> F64:
 
 def _is_simple(ring: F64) -> bool:
     """Return whether a ring turns to the left as a whole, and no two of its edges cross or touch but at common ends."""
-    a, b = ring, np.roll(ring, -1, axis=0)
-    if _area(ring) <= 0.0 or _touches(ring):
-        return False
-
-    def side(p: F64, q: F64, r: F64) -> F64:
-        result: F64 = (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (
-            r[..., 0] - p[..., 0]
-        )
-        return result
-
-    p, q, r, s = a[:, None], b[:, None], a[None], b[None]
-    crossed = (side(p, q, r) * side(p, q, s) < 0.0) & (side(r, s, p) * side(r, s, q) < 0.0)
-    return not bool(crossed.any())
+    line = LinearRing(ring)
+    return line.is_simple and line.is_ccw and not _touches(ring)
 
 
 def _holds(ring: F64, outline: F64) -> bool:
     """Return whether a lanelet's outline (N, 2) lies in a ring (M, 2); its area is summed where corners do not tell."""
     outside = outline[~inside(ring, outline)]
     notches = ring[inside(outline, ring)]
-    strays = [_gaps_m(places, other).min(axis=1) for places, other in ((outside, ring), (notches, outline))]
+    strays = [distance(points(places), LinearRing(other)) for places, other in ((outside, ring), (notches, outline))]
     if all((gap_m < _NEAR_M).all() for gap_m in strays):
         return True
-    return overlap_share(outline, ring, _SLICES) >= _WHOLE
+    return overlap_share(outline, ring) >= _WHOLE
 
 
 def _touches(ring: F64) -> bool:
     """Return whether a corner of a ring (N, 2) lies on an edge that it does not end."""
-    corner, edge = np.nonzero(_gaps_m(ring, ring) < _TOUCH_M)
+    edges = linestrings(np.stack([ring, np.roll(ring, -1, axis=0)], axis=1))
+    corner, edge = np.nonzero(distance(points(ring[:, None]), edges) < _TOUCH_M)
     return bool(((corner != edge) & (corner != (edge + 1) % len(ring))).any())
 
 
-def _gaps_m(points: F64, ring: F64) -> F64:
-    """Return how far points (N, 2) lie from each edge of a ring (M, 2): (N, M)."""
-    along, away = (np.roll(ring, -1, axis=0) - ring)[None], points[:, None] - ring[None]
-    share = np.clip((away * along).sum(axis=2) / np.maximum((along**2).sum(axis=2), 1e-12), 0.0, 1.0)
-    gaps_m: F64 = np.linalg.norm(away - share[..., None] * along, axis=2)
-    return gaps_m
-
-
-def _area(ring: F64) -> float:
-    near = ring - ring[0]
-    after = np.roll(near, -1, axis=0)
-    return float(0.5 * (near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]).sum())
-
-
 def _hull(target: LaneletMap, nodes: list[int]) -> tuple[int, ...]:
-    """Return the convex hull of nodes, counter-clockwise (Andrew, 1979)."""
-    ranked = sorted(dict.fromkeys(nodes), key=lambda node: target.nodes[node][:2])
-
-    def half(chain: list[int]) -> list[int]:
-        kept: list[int] = []
-        for node in chain:
-            while len(kept) > 1 and _turn(target, kept[-2], kept[-1], node) <= 0.0:
-                kept.pop()
-            kept.append(node)
-        return kept[:-1]
-
-    return tuple(half(ranked) + half(ranked[::-1]))
+    """Return the convex hull of nodes, counter-clockwise."""
+    node_at = {target.nodes[node][:2]: node for node in nodes}
+    hull = orient_polygons(convex_hull(multipoints(list(node_at))))
+    return tuple(node_at[x, y] for x, y in get_coordinates(hull)[:-1].tolist())
 
 
-def _turn(target: LaneletMap, one: int, two: int, three: int) -> float:
-    (ax, ay), (bx, by), (cx, cy) = (target.nodes[node][:2] for node in (one, two, three))
-    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-
-
-def inside(ring: F64, points: F64) -> NDArray[np.bool_]:
-    """Return which points (N, 2) lie inside a ring (M, 2), by counting crossings of a ray to the east."""
-    odd = np.zeros(len(points), dtype=np.bool_)
-    for (x0, y0), (x1, y1) in pairwise([*ring.tolist(), ring[0].tolist()]):
-        spans = (y0 > points[:, 1]) != (y1 > points[:, 1])
-        if spans.any():
-            odd ^= spans & (points[:, 0] < x0 + (points[:, 1] - y0) * (x1 - x0) / (y1 - y0 or 1e-18))
-    return odd
+def inside(ring: F64, places: F64) -> NDArray[np.bool_]:
+    """Return which places (N, 2) lie inside a ring (M, 2)."""
+    within: NDArray[np.bool_] = contains_xy(make_valid(Polygon(ring)), places)
+    return within

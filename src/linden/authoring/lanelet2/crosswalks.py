@@ -7,6 +7,7 @@ import numpy as np
 from linden.authoring.lanelet2.areas import inside
 from linden.authoring.lanelet2.model import Bounds, LaneletMap
 from linden.authoring.lanelet2.outlines import outline_of
+from linden.authoring.lanelet2.overlap import area_m2
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
 
@@ -31,18 +32,12 @@ def crosswalks_of(tables: Tables) -> list[Crosswalk]:
             if not thing.is_crosswalk:
                 continue
             outline = outline_of(tables, index, thing)
-            if len(outline) < 3 or _area(outline) < 1e-3:
+            if len(outline) < 3 or area_m2(outline[:, :2]) < 1e-3:
                 continue
             s_m = np.clip([thing.s_m], 0.0, road.length_m)
             heading = float(tables.curves.pose(np.array([index]), s_m).heading_rad[0])
             found.append(Crosswalk(f"{road.id}/{thing.id}/{nth}", outline, *_sides(outline, heading)))
     return found
-
-
-def _area(ring: F64) -> float:
-    near = ring[:, :2] - ring[0, :2]
-    after = np.roll(near, -1, axis=0)
-    return abs(float(0.5 * (near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]).sum()))
 
 
 def _sides(outline: F64, heading_rad: float) -> tuple[F64, F64]:

@@ -1,7 +1,6 @@
 """Lanelet2's file format: OSM XML, written and read."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -11,7 +10,6 @@ from linden.authoring.lanelet2.model import DIGITS, LaneletMap, Member, Node, Re
 from linden.authoring.lanelet2.projection import NOWHERE, Projection, projection_of
 from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
-from linden.maps.opendrive.evaluate.pieces import F64
 
 _LARGEST_ID = 2**63 - 1
 _MOST_BYTES = 1 << 30
@@ -152,17 +150,24 @@ def _fresh(reader: _Reader, node: Any, number: int, known: dict[int, Any]) -> in
 def _first_place(reader: _Reader, nodes: list[Any]) -> Projection:
     for node in nodes:
         if node.find("tag[@k='local_x']") is None:
-            latitude = reader.real(node, node.get("lat"), "lat")
-            return Projection(latitude, reader.real(node, node.get("lon"), "lon"), 1.0, 0.0, 0.0)
+            return Projection(*_degrees(reader, node), 1.0, 0.0, 0.0)
     return NOWHERE
 
 
 def _place(reader: _Reader, node: Any, tags: dict[str, str], projection: Projection) -> tuple[float, float]:  # noqa: ANN401
     if "local_x" in tags and "local_y" in tags:
         return reader.real(node, tags.pop("local_x"), "local_x"), reader.real(node, tags.pop("local_y"), "local_y")
-    degrees: Callable[[str], F64] = lambda key: np.array([reader.real(node, node.get(key), key)])  # noqa: E731
-    x_m, y_m = projection.metres(degrees("lat"), degrees("lon"))
-    return float(x_m[0]), float(y_m[0])
+    x_m, y_m = projection.metres(*_degrees(reader, node))
+    if not (math.isfinite(x_m) and math.isfinite(y_m)):
+        raise reader.refuse(node, "its latitude and longitude lie too far from the map's origin")
+    return x_m, y_m
+
+
+def _degrees(reader: _Reader, node: Any) -> tuple[float, float]:  # noqa: ANN401 - an element of lxml
+    latitude, longitude = (reader.real(node, node.get(key), key) for key in ("lat", "lon"))
+    if abs(latitude) > 90.0 or abs(longitude) > 180.0:
+        raise reader.refuse(node, f"latitude {latitude:g} and longitude {longitude:g} are no place on Earth")
+    return latitude, longitude
 
 
 def _check_lanelets(reader: _Reader, root: Any, found: LaneletMap) -> None:  # noqa: ANN401 - an element of lxml

@@ -27,7 +27,7 @@ class RouteStop(NamedTuple):
 
 
 def read_stops(path: Path) -> tuple[RouteStop, ...]:
-    """The ``<stop id x y>`` elements of a route file.
+    """Return the ``<stop id x y>`` elements of a route file.
 
     Raises:
         UserError: it cannot be read, or a stop lacks its place.
@@ -91,7 +91,7 @@ class BusStop(NamedTuple):
 
 
 def bus_stops(net: Net, stops: tuple[RouteStop, ...]) -> tuple[tuple[BusStop, ...], tuple[RouteStop, ...]]:
-    """A bus stop for each of ``stops``, and the stops far from any lane for cars."""
+    """Return a bus stop for each of ``stops``, and the stops far from any lane for cars."""
     found, lost = [], []
     for stop in stops:
         x_m, y_m = stop.x_m + net.offset_m[0], -stop.y_m + net.offset_m[1]

@@ -91,7 +91,7 @@ class _Found(NamedTuple):
 
 
 def _found(converted: Converted) -> _Found:
-    """The lanes of the map that the network lacks, and the lanes with other speeds."""
+    """Return the lanes of the map that the network lacks, and the lanes with other speeds."""
     net, missing, speeds = converted.net, [], []
     for origin, length_m, limit_mps in _lanes(converted.opendrive, LaneType.DRIVING):
         edges = net.edges_of_origin.get(origin, [])
@@ -120,7 +120,7 @@ def _lanes(opendrive: OpenDrive, kind: LaneType) -> Iterator[tuple[str, float, f
 
 
 def _signs(converted: Converted) -> list[tuple[str, int, int]]:
-    """What the map's signs and lights come to: name, number in the map, number with links that act as signed.
+    """Return what the map's signs and lights come to: name, number in the map, number with links that act as signed.
 
     A link's state is ``s`` or ``w`` at a stop, ``m`` where it yields, ``o`` or ``O`` at a light.
     """
@@ -149,12 +149,12 @@ def _is_of(name: str, kind: str, *, is_light: bool) -> bool:
 
 
 def _nearest_m(place_m: tuple[float, float], others_m: Iterable[tuple[float, ...]]) -> float:
-    """How far the nearest of other places lies."""
+    """Return how far the nearest of other places lies."""
     return min((math.dist(place_m, other_m) for other_m in others_m), default=math.inf)
 
 
 def walkable(net: Net) -> int:
-    """How many groups of pavements there are within which people reach every other."""
+    """Return how many groups of pavements there are within which people reach every other."""
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(edge.id for edge in net.edges.values() if edge.pavements)
     for connection in net.connections:
@@ -171,7 +171,7 @@ def _is_for_people(net: Net, edge: str, lane: int) -> bool:
 
 
 def _parts(net: Net) -> int:
-    """How many groups of edges there are within which every edge reaches every other by car."""
+    """Return how many groups of edges there are within which every edge reaches every other by car."""
     graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_nodes_from(edge.id for edge in net.car_edges())
     for connection in net.connections:

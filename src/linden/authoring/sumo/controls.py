@@ -41,7 +41,7 @@ def controls_of(net: Net, placed: tuple[PlacedSignal, ...], opendrive: OpenDrive
 
 
 def _edges(net: Net, signal: PlacedSignal, opendrive: OpenDrive) -> list[str]:
-    """The edges made of a signal's lanes: of several, the edges into the junction that the signal controls."""
+    """Return the edges made of a signal's lanes: of several, the edges into the junction that the signal controls."""
     found: dict[str, None] = {}
     for lane in signal.lanes:
         origin, junction = _approach(opendrive, lane, signal.junction_id)
@@ -52,7 +52,7 @@ def _edges(net: Net, signal: PlacedSignal, opendrive: OpenDrive) -> list[str]:
 
 
 def _approach(opendrive: OpenDrive, lane: AffectedLane, junction: int) -> tuple[str, int]:
-    """The lane before the junction as "ROAD_LANE", and the junction.
+    """Return the lane before the junction as "ROAD_LANE", and the junction.
 
     CARLA's towns put references to a light on the connecting roads; their approach is the road that those come from.
     """
@@ -69,7 +69,7 @@ def _approach(opendrive: OpenDrive, lane: AffectedLane, junction: int) -> tuple[
 
 
 def node_types(net: Net, controls: Controls) -> dict[str, str]:
-    """The type of each node with signs: ``allway_stop``, ``priority_stop`` or ``priority``.
+    """Return the type of each node with signs: ``allway_stop``, ``priority_stop`` or ``priority``.
 
     ``rightOfWay="edgePriority"`` would turn every stop into a yield, so only the node's type makes traffic stop.
     """
@@ -149,7 +149,7 @@ def _program(light: str, links: _Links, order: dict[str, int], times_s: tuple[fl
 
 
 def _green(links: _Links, turn: set[int], count: int) -> str:
-    """The state while the links of ``turn`` are green.
+    """Return the state while the links of ``turn`` are green.
 
     People cross the approaches that are red. Traffic that turns into such a street gives way (``g``), and so does
     traffic that turns left where two heads are green at once.
@@ -169,5 +169,5 @@ def _green(links: _Links, turn: set[int], count: int) -> str:
 
 
 def _controller(signal: PlacedSignal) -> str:
-    """The controller that switches a light; a light without one is alone."""
+    """Return the controller that switches a light; a light without one is alone."""
     return signal.controllers[0] if signal.controllers else f"light {signal.signal_id}"

@@ -65,7 +65,7 @@ class HomeWard(enum.Enum):
 
 
 def school_way(hour: float) -> HomeWard | None:
-    """Whether children go to school at an hour, or come from it."""
+    """Return whether children go to school at an hour, or come from it."""
     if TO_SCHOOL_H[0] <= hour < TO_SCHOOL_H[1]:
         return HomeWard.TO
     return HomeWard.FROM if FROM_SCHOOL_H[0] <= hour < FROM_SCHOOL_H[1] else None
@@ -86,7 +86,7 @@ def check(demand: Demand) -> None:
 
 
 def trips_per_hour(net: Net, demand: Demand) -> float:
-    """How many trips begin in an hour at that time of the day."""
+    """Return how many trips begin in an hour at that time of the day."""
     lane_km = sum(edge.length_m * len(edge.car_lanes) for edge in net.car_edges()) / 1000.0
     return BUSY_TRIPS_PER_KM * lane_km * HOUR_SHARES[int(demand.hour)] * demand.scale
 
@@ -153,7 +153,7 @@ class _Kerb:
 def _by_place(
     start: NetEdge, end: NetEdge, dice: random.Random, hour: float, places: tuple[list[NetEdge], list[NetEdge]]
 ) -> tuple[NetEdge, NetEdge]:
-    """The ends of a trip, one of them now and then at one of the ``places``: schools, then transit stations."""
+    """Return the ends of a trip, one of them now and then at one of the ``places``: schools, then transit stations."""
     schools, stations = places
     way = school_way(hour)
     if schools and way is not None and dice.random() < SCHOOL_SHARE:
@@ -183,7 +183,7 @@ def drawn(edges: Sequence[NetEdge], likelihood: Mapping[str, float], dice: rando
 
 
 def _elsewhere(edges: Iterable[NetEdge], start: NetEdge) -> list[NetEdge]:
-    """The edges to which a trip leaves the street that it begins in."""
+    """Return the edges to which a trip leaves the street that it begins in."""
     street, begin = start.id.lstrip("-"), start.start
     return [edge for edge in edges if edge.end != begin and edge.id.lstrip("-") != street]
 

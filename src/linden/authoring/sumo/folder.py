@@ -92,7 +92,7 @@ def _taken(
 
 
 def _config(name: str, demand: Demand, *, has_trips: bool) -> bytes:
-    """A configuration of SUMO. The types stand before the routes, which need them."""
+    """Return a configuration of SUMO. The types stand before the routes, which need them."""
     root = etree.Element("configuration")
     given = etree.SubElement(root, "input")
     etree.SubElement(given, "net-file", {"value": f"{name}.net.xml"})

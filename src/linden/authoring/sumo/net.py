@@ -1,18 +1,17 @@
 """A SUMO network as frozen values: edges with lanes, connections, nodes, and the OpenDRIVE lanes they were made of."""
 
-import itertools
-import math
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 from lxml import etree
+from shapely import LineString, Point
 
-DRIVING_TYPE, SIDEWALK_TYPE, PARKING_TYPE = "driving", "sidewalk", "parking"
+PARKING_TYPE = "parking"
 NO_TRAFFIC = "all"
 THERE_AND_BACK = 2  # edges of one street
 WIDTH_M = 3.2  # of a lane without a width: SUMO's documentation, "Networks/SUMO Road Networks"
@@ -156,7 +155,7 @@ def read_net(path: Path) -> Net:
 
 
 def _middle(crossing: "etree._Element") -> tuple[float, float]:
-    """The middle between the ends of a crossing."""
+    """Return the middle between the ends of a crossing."""
     shape = _lane(next(crossing.iter("lane"))).shape
     return 0.5 * (shape[0][0] + shape[-1][0]), 0.5 * (shape[0][1] + shape[-1][1])
 
@@ -192,27 +191,17 @@ def _connection(element: "etree._Element") -> Connection:
 
 
 def along(lane: NetLane, x_m: float, y_m: float) -> tuple[float, float]:
-    """How far a place lies from a lane, and how far along the lane it is."""
-    best, passed_m = (math.inf, 0.0), 0.0
-    for first, second in zip(lane.shape, lane.shape[1:], strict=False):
-        dx_m, dy_m = second[0] - first[0], second[1] - first[1]
-        length_m = math.hypot(dx_m, dy_m)
-        if length_m > 0.0:
-            share = ((x_m - first[0]) * dx_m + (y_m - first[1]) * dy_m) / length_m**2
-            share = min(max(share, 0.0), 1.0)
-            away_m = math.hypot(first[0] + share * dx_m - x_m, first[1] + share * dy_m - y_m)
-            best = min(best, (away_m, passed_m + share * length_m))
-        passed_m += length_m
-    return best
+    """Return how far a place lies from a lane, and how far along the lane it is."""
+    line, place = _line(lane.shape), Point(x_m, y_m)
+    return line.distance(place), line.project(place)
 
 
 def point_at(lane: NetLane, share: float) -> tuple[float, float]:
-    """Return the place at a share of a lane's length."""
-    rest_m = share * sum(math.dist(first[:2], second[:2]) for first, second in itertools.pairwise(lane.shape))
-    for first, second in itertools.pairwise(lane.shape):
-        length_m = math.dist(first[:2], second[:2])
-        if length_m >= rest_m > 0.0:
-            part = rest_m / length_m
-            return first[0] + part * (second[0] - first[0]), first[1] + part * (second[1] - first[1])
-        rest_m -= length_m
-    return lane.shape[0 if share <= 0.0 else -1][0], lane.shape[0 if share <= 0.0 else -1][1]
+    """Return the place at a share of a lane's length, from 0 to 1."""
+    place = _line(lane.shape).interpolate(share, normalized=True)
+    return place.x, place.y
+
+
+@cache
+def _line(shape: tuple[tuple[float, ...], ...]) -> LineString:
+    return LineString([point[:2] for point in shape])

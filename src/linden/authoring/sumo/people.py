@@ -49,7 +49,7 @@ class Rider(NamedTuple):
 
 
 def draw_walks(net: Net, demand: Demand, places: tuple[Place, ...]) -> list[Walk]:
-    """The walks of a demand in the order of their departure: those under way first. None without pavements."""
+    """Return the walks of a demand in the order of their departure: those under way first. None without pavements."""
     streets = [edge for edge in net.edges.values() if edge.pavements]
     if not streets:
         return []
@@ -75,14 +75,14 @@ def draw_walks(net: Net, demand: Demand, places: tuple[Place, ...]) -> list[Walk
 def _goal(
     dice: random.Random, demand: Demand, schools: Sequence[NetEdge], stations: Sequence[NetEdge]
 ) -> NetEdge | None:
-    """The school or station of a walk; None for a walk between homes."""
+    """Return the school or station of a walk; None for a walk between homes."""
     if schools and school_way(demand.hour) is not None and dice.random() < SCHOOL_SHARE:
         return dice.choice(schools)
     return dice.choice(stations) if stations and dice.random() < TRANSIT_SHARE else None
 
 
 def draw_riders(net: Net, demand: Demand, stops: Sequence[BusStop]) -> list[Rider]:
-    """The passengers of a demand in the order of their departure; ``stops`` are in the order of the route."""
+    """Return the passengers of a demand in the order of their departure; ``stops`` are in the order of the route."""
     dice = random.Random(f"riders {demand.seed}")  # noqa: S311 - as above
     rate_hz = BUSY_RIDERS_PER_STOP * HOUR_SHARES[int(demand.hour)] * demand.scale / HOUR_S
     streets = [edge for edge in net.edges.values() if edge.pavements]
@@ -127,16 +127,16 @@ def _person(root: "etree._Element", name: str, depart_s: float, at_m: float) -> 
 
 
 def _near(streets: Sequence[NetEdge], edge: NetEdge, reach_m: float) -> list[NetEdge]:
-    """The streets that begin within reach of where an edge begins; the edge itself is one."""
+    """Return the streets that begin within reach of where an edge begins; the edge itself is one."""
     at = edge.lanes[0].shape[0][:2]
     return [each for each in streets if math.dist(each.lanes[0].shape[0][:2], at) <= reach_m]
 
 
 def _somewhere(edge: NetEdge, dice: random.Random) -> float:
-    """A place along an edge, m from its beginning."""
+    """Return a place along an edge, m from its beginning."""
     return round(dice.uniform(0.1, 0.9) * edge.length_m, 2)
 
 
 def _count(dice: random.Random, mean: float) -> int:
-    """A number with this mean: the whole part, and one more as often as the rest says."""
+    """Return a number with this mean: the whole part, and one more as often as the rest says."""
     return int(mean) + (dice.random() < mean - int(mean))

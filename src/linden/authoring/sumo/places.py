@@ -24,7 +24,7 @@ class Place(NamedTuple):
 
 
 def places_of(path: Path | None, origin_deg: tuple[float, float]) -> tuple[Place, ...]:
-    """The points of a GeoJSON file with a ``kind`` in `KINDS`; without a file those of Linden.
+    """Return the points of a GeoJSON file with a ``kind`` in `KINDS`; without a file those of Linden.
 
     ``origin_deg`` is the latitude and longitude of the map's origin.
 
@@ -53,12 +53,12 @@ def places_of(path: Path | None, origin_deg: tuple[float, float]) -> tuple[Place
 
 
 def car_streets(net: Net, places: tuple[Place, ...], kind: str) -> list[NetEdge]:
-    """The street for cars that is nearest to each place of a kind; a place far from any has none."""
+    """Return the street for cars that is nearest to each place of a kind; a place far from any has none."""
     return [street for place in places if place.kind == kind and (street := _nearest(net, place, for_cars=True))]
 
 
 def pavements(net: Net, places: tuple[Place, ...], kind: str) -> list[NetEdge]:
-    """The street with a pavement that is nearest to each place of a kind, likewise."""
+    """Return the street with a pavement that is nearest to each place of a kind; a place far from any has none."""
     return [street for place in places if place.kind == kind and (street := _nearest(net, place, for_cars=False))]
 
 

@@ -35,7 +35,7 @@ SHADES = {"passenger": "yellow", "delivery": "orange", "truck": "orange", "bus":
 
 
 def blueprints() -> dict[str, Any]:
-    """The facts of all vehicles by their name without "vehicle."."""
+    """Return the facts of all vehicles by their name without "vehicle."."""
     data = (resources.files("linden") / "data" / "blueprints.json").read_text(encoding="utf-8")
     vehicles: dict[str, Any] = json.loads(data)["vehicles"]
     return vehicles

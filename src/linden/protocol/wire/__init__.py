@@ -1,6 +1,7 @@
 """CARLA 0.9.16's wire protocol without a socket: bytes in, typed values out, and back.
 
-``rpc`` frames calls and answers, ``decode`` and ``encode`` go between msgpack's lists and named tuples, ``commands``
-knows the batch, ``stream`` the sensor streams and their tokens, ``headers`` the packed structs before every payload,
-``vocabulary`` every name the official client can call.
+``rpc`` frames calls and answers. ``decode`` goes from msgpack's lists to named tuples, ``answers`` the other way.
+``commands`` knows the batch; ``controls`` and ``packed`` read long batches by column. ``stream`` has the sensor streams
+and their tokens, ``measurements`` the packed structs of payloads, ``client_functions`` the names that the official
+client can call.
 """

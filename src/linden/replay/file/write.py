@@ -18,8 +18,6 @@ from linden.replay.file.folder import open_at_once
 from linden.replay.file.layouts import FRAME_START, MAGIC, VERSION, PacketId
 from linden.replay.file.packets import ActorAdded, PhysicsRecord, Records, WheelTurns
 
-MOST_RECORDS = 0xFFFF
-"""As many as a packet's count can say."""
 _HEAD = struct.Struct("<BI")
 _COUNT = struct.Struct("<H")
 _LONG_COUNT = struct.Struct("<I")

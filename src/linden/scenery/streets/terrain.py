@@ -15,6 +15,7 @@ from linden.scenery.streets.road import GRASS
 from linden.scenery.streets.simplified_lanes import SimplifiedLanes
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
 _EDGE_STEP_M = 4.0
 _GRAIN_M = 45.0
@@ -28,13 +29,11 @@ _HIGH_M = 1e6
 
 def land(simplified_lanes: SimplifiedLanes, ground: Ground, floors: Floors) -> Mesh:
     """Return the land of a map; flat and empty where the map has no roads."""
-    from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server with cached maps never needs it
-
     edges = _edges(simplified_lanes, ground)
     if not len(edges):
         edges = np.zeros((1, 3))
     points = _thinned(np.concatenate([edges, _open_land(edges, ground), _horizon(edges, ground)]))
-    triangles = Triangulation(points[:, 0], points[:, 1]).triangles.astype(np.int64)
+    triangles = _delaunay(points[:, :2])
     a, b, c = (points[triangles[:, k]] for k in range(3))
     turned = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     triangles[turned] = triangles[turned][:, [0, 2, 1]]
@@ -45,6 +44,15 @@ def land(simplified_lanes: SimplifiedLanes, ground: Ground, floors: Floors) -> M
         triangles.astype(np.uint32),
         faces(len(triangles), Material.GRASS, SemanticTag.TERRAIN, GRASS),
     )
+
+
+def _delaunay(points: F64) -> I64:
+    """Return Delaunay's triangles (T, 3) of different points (N, 2), as their indices."""
+    import shapely  # noqa: PLC0415 - 0.2 s, which a server with cached maps does without
+
+    corners = shapely.get_coordinates(shapely.delaunay_triangles(shapely.multipoints(points))).reshape(-1, 4, 2)[:, :3]
+    number = {point: index for index, point in enumerate(map(tuple, points.tolist()))}
+    return np.array([number[x, y] for x, y in corners.reshape(-1, 2).tolist()], np.int64).reshape(-1, 3)
 
 
 def _on_roads(points: F64, ground: Ground) -> NDArray[np.bool_]:

@@ -54,3 +54,13 @@ def test_a_rectangle_stays_one_polygon() -> None:
 def test_a_corner_on_a_straight_side_stays_a_corner() -> None:
     rectangle = [(0, 0), (0, 4), (13, 4), (30, 4), (30, 0)]
     assert any((13, 4) in polygon for polygon in convex_polygons(rectangle, []))
+
+
+def test_two_holes_that_lie_close_together_take_nothing_of_a_face_with_them() -> None:
+    outer = [(0, 197), (0, 232), (2, 232), (2, 245), (0, 244), (0, 250), (320, 268), (320, 215)]
+    holes = [
+        [(88, 241), (89, 237), (114, 238), (113, 250), (88, 249)],
+        [(124, 239), (148, 240), (147, 252), (124, 251)],
+    ]
+    whole = sum(twice_area(np.array(loop)) for loop in (outer, *holes))
+    assert sum(twice_area(np.array(polygon)) for polygon in convex_polygons(outer, holes)) == whole

@@ -144,7 +144,7 @@ def _inwards_m(
     """How far to the right of the smoothed way a turning body has to be driven to stay within its lane. All (F,).
 
     Its outer front corner swings out farther than its inner side cuts in: the circle of the rear axle, around which
-    both turn, lies inside that of the origin (kinematic bicycle, as in ``lateral``).
+    both turn, lies inside that of the origin (kinematic bicycle, as in ``controllers``).
     """
     bend_1pm = np.maximum(np.abs(curvature_1pm), 1e-3)
     radius_m = np.maximum(1.0 / bend_1pm, 1.5 * body.rear_axle_m)

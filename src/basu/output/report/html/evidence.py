@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.output.report import events
-from basu.output.report.plots.chart import Line, Mark, chart
+from basu.output.report.plots.chart import Curve, Flag, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
 from basu.output.report.templates import DASH, TIMES, e, figure, number, render
@@ -37,7 +37,7 @@ UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded siz
 
 
 def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
-    """The infractions, and what is not scored, each one to be opened and linked to."""
+    """Return the infractions, and what is not scored, each one to be opened and linked to."""
     scored: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
     rest: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
     so_far = 1.0
@@ -51,7 +51,7 @@ def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
 
 
 def close_up(history: History, event: Event) -> Element:
-    """The place from above: the vehicle under test, dark, and the actors near it in that tick."""
+    """Return the place from above: the vehicle under test, dark, and the actors near it in that tick."""
     x_m, y_m = event.x_m, event.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
     frame, vehicle = history.frames[event.tick], history.facts.vehicle
@@ -105,7 +105,7 @@ def _controls(history: History, bounds: Bounds) -> list[Element]:
 def _body(
     x_m: float, y_m: float, yaw_rad: float, front_m: float, rear_m: float, half_width_m: float, style: str
 ) -> Element:
-    """A vehicle or walker from above, pointed at its front."""
+    """Return a vehicle or walker from above, pointed at its front."""
     outline = [
         (front_m, 0.0),
         (front_m * 0.6, half_width_m),
@@ -124,16 +124,16 @@ def _body(
 def _speed(felt: Signals, event: Event) -> Element:
     """Speed and limit around the moment."""
     near = np.flatnonzero(np.abs(felt.t_s - event.t_s) <= AROUND_S)
-    curves: Sequence[Line] = (
-        Line("driven", felt.speed_mps[near], "first"),
-        Line("limit", felt.limit_mps[near], "limit", steps=True),
+    curves: Sequence[Curve] = (
+        Curve("driven", felt.speed_mps[near], "first"),
+        Curve("limit", felt.limit_mps[near], "limit", steps=True),
     )
-    moment = Mark(event.t_s, event.label, event.title, f"#{event.anchor}", event.factor is not None)
+    moment = Flag(event.t_s, event.label, event.title, f"#{event.anchor}", event.factor is not None)
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
 def _facts(event: Event, so_far: float) -> list[tuple[str, str]]:
-    """The figures, each with its name."""
+    """Return the figures, each with its name."""
     return [
         ("time", f"{event.t_s:.2f} s, tick {event.tick}"),
         ("speed", DASH if event.speed_mps is None else f"{event.speed_mps:.2f} m/s"),
@@ -145,7 +145,7 @@ def _facts(event: Event, so_far: float) -> list[tuple[str, str]]:
 
 
 def _cost(factor: float | None, so_far: float) -> str:
-    """What an event does to the score."""
+    """Return what an event does to the score."""
     if factor is None:
         return "nothing in the driving score"
     return f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}"

@@ -47,7 +47,7 @@ def write_report(folder: Path, run: RunRecord) -> None:
 
 
 def report(run: RunRecord) -> bytes:
-    """The report of a run as a page."""
+    """Return the report of a run as a page."""
     result, document, history = run.result, run.result.document(), run.history
     meta = result.meta
     values: dict[str, Any] = {
@@ -89,7 +89,7 @@ def report(run: RunRecord) -> bytes:
 
 
 def page(title: str, body: Markup, script: str = "", style: str = "") -> bytes:
-    """A page without network requests: its policy makes the browser enforce this, and run no script but ours.
+    """Return a page without network requests: its policy makes the browser enforce this, and run no script but ours.
 
     ``style`` comes after that of every report. The body holds the ``script`` already; the policy allows it.
     """
@@ -106,7 +106,7 @@ def page(title: str, body: Markup, script: str = "", style: str = "") -> bytes:
 
 
 def legend(more: Sequence[Element] = ()) -> Element:
-    """What the lines of a map are; ``more`` stands behind."""
+    """Return what the lines of a map are; ``more`` stands behind."""
     found = e("p", class_="legends")
     for style, name in (("planned", "planned path"), ("driven", "driven path")):
         sample = e("svg", e("path", d="M0 5H26", class_=style), viewBox="0 0 26 10", class_="sample")
@@ -115,7 +115,7 @@ def legend(more: Sequence[Element] = ()) -> Element:
 
 
 def _map_legend(*, has_streets: bool) -> list[Element]:
-    """What the marks on the map of a report are."""
+    """Return what the marks on the map of a report are."""
     found = [
         e("span", e("i", class_="sign"), "stop sign", class_="legend"),
         e("span", e("i", class_="last"), "end of the drive", class_="legend"),

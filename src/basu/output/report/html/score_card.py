@@ -31,34 +31,34 @@ UNITS = {
 }
 
 
-class Row(NamedTuple):
+class NamedFigure(NamedTuple):
     """A figure by name, as text."""
 
     name: str
     text: str
 
 
-def rows(document: Mapping[str, Any], before: str = "") -> list[Row]:
-    """Every figure of a document, those within its parts under the parts' names; lists by their number."""
+def rows(document: Mapping[str, Any], before: str = "") -> list[NamedFigure]:
+    """Return every figure of a document, those within its parts under the parts' names; lists by their number."""
     found = []
     for key, value in document.items():
         name, unit = _unit(key)
         name = f"{before}{name}"
         if isinstance(value, dict):
-            found += rows(value, f"{name}: ") if value else [Row(name, "none")]
+            found += rows(value, f"{name}: ") if value else [NamedFigure(name, "none")]
         else:
-            found.append(Row(name, _text(value, unit)))
+            found.append(NamedFigure(name, _text(value, unit)))
     return found
 
 
-def table(found: list[Row], caption: str | None = None) -> Element:
+def table(found: list[NamedFigure], caption: str | None = None) -> Element:
     """Rows as a table."""
     body = e("tbody", *(e("tr", e("th", row.name, scope="row"), e("td", row.text)) for row in found))
     return e("table", None if caption is None else e("caption", caption), body, class_="figures")
 
 
 def _unit(key: str) -> tuple[str, str]:
-    """The name and the unit that a key is made of."""
+    """Return the name and the unit that a key is made of."""
     stem, _, last = key.rpartition("_")
     if stem and last in UNITS:
         return words(stem), UNITS[last]
@@ -66,7 +66,7 @@ def _unit(key: str) -> tuple[str, str]:
 
 
 def _text(value: object, unit: str) -> str:
-    """A value as people read it."""
+    """Return a value as people read it."""
     if value is None:
         return DASH
     if isinstance(value, bool):
@@ -82,7 +82,7 @@ FIGURES = ("comfort_parts", "harm", "largest", "balance", "vibration")  # of the
 
 
 def score_card(result: Result) -> Markup:
-    """The card of a result: equation 5.5 on the left, equation 5.1 on the right, other judgements below."""
+    """Return the card of a result: equation 5.5 on the left, equation 5.1 on the right, other judgements below."""
     if result.scores is None:
         return render("templates/score_card.j2", scores=None, success=result.success)
     counts = Counter(found.kind.value for found in result.infractions)

@@ -48,7 +48,7 @@ def time_ticks(low_s: float, high_s: float, about: int = 10) -> list[float]:
 
 
 def clock(t_s: float, long: bool) -> str:  # noqa: FBT001 - which of two ways an axis is written
-    """A time on an axis: seconds, or minutes and seconds on a long one."""
+    """Return a time on an axis: seconds, or minutes and seconds on a long one."""
     if not long:
         return f"{t_s:g}"
     return f"{int(t_s // MINUTE_S)}:{int(t_s % MINUTE_S):02d}"
@@ -59,7 +59,7 @@ HEADROOM = 0.08  # of the range of values, above and below
 LEAST_APART = 0.06  # of the range: names of levels nearer to each other than this could not be read
 
 
-class Line(NamedTuple):
+class Curve(NamedTuple):
     """One curve of a chart."""
 
     name: str
@@ -76,7 +76,7 @@ class Shade(NamedTuple):
     style: str  # class in report.css: `over`, `manual`
 
 
-class Mark(NamedTuple):
+class Flag(NamedTuple):
     """A moment that a chart points out; a link where there is something to open."""
 
     t_s: float
@@ -88,14 +88,14 @@ class Mark(NamedTuple):
 
 def chart(
     t_s: NDArray[np.float64],
-    lines: Sequence[Line],
+    lines: Sequence[Curve],
     *,
     title: str,
     unit: str,
     id_: str | None = None,
     levels: Sequence[tuple[float, str]] = (),
     shades: Sequence[Shade] = (),
-    marks: Sequence[Mark] = (),
+    marks: Sequence[Flag] = (),
     least_range: tuple[float, float] = (0.0, 0.0),
     least_end_s: float = 0.0,
 ) -> Element:
@@ -125,7 +125,7 @@ def chart(
 
 
 def times(begin_s: float, end_s: float) -> Element:
-    """The axis below a chart."""
+    """Return the axis below a chart."""
     axis = e("div", class_="times")
     is_long = end_s - begin_s > LONG_S
     for count, t_s in enumerate(time_ticks(begin_s, end_s)):
@@ -142,12 +142,12 @@ def times(begin_s: float, end_s: float) -> Element:
 
 
 def share(t_s: float, begin_s: float, end_s: float) -> str:
-    """Where a time lies on an axis, in CSS."""
+    """Return where a time lies on an axis, in CSS."""
     return percent(min(1.0, max(0.0, (t_s - begin_s) / (end_s - begin_s))))
 
 
 def _range(curves: Sequence[NDArray[np.float64]], least: tuple[float, float]) -> tuple[float, float]:
-    """The heights that a chart shows: all values, with room."""
+    """Return the heights that a chart shows: all values, with room."""
     values = np.concatenate([line[np.isfinite(line)] for line in curves])
     low = min(float(values.min(initial=np.inf)), least[0])
     high = max(float(values.max(initial=-np.inf)), least[1])
@@ -159,14 +159,14 @@ def _range(curves: Sequence[NDArray[np.float64]], least: tuple[float, float]) ->
 
 def _square(
     t_s: NDArray[np.float64],
-    lines: Sequence[Line],
+    lines: Sequence[Curve],
     levels: Sequence[tuple[float, str]],
     begin_s: float,
     end_s: float,
     low: float,
     high: float,
 ) -> Element:
-    """The curves, with the grid behind them."""
+    """Return the curves, with the grid behind them."""
     square = e("svg", viewBox=f"0 0 {SIDE:g} {SIDE:g}", preserveAspectRatio="none", aria_hidden="true")
     up = [(high - value) / (high - low) * SIDE for value in ticks(low, high)]
     square.append(e("path", d="".join(f"M0 {number(y, 1)}H{SIDE:g}" for y in up), class_="grid"))
@@ -184,7 +184,7 @@ def _square(
     return square
 
 
-def _path(x: NDArray[np.float64], y: NDArray[np.float64], steps: bool) -> str:  # noqa: FBT001 - of a Line
+def _path(x: NDArray[np.float64], y: NDArray[np.float64], steps: bool) -> str:  # noqa: FBT001 - of a Curve
     """Curves as SVG writes them."""
     parts = []
     for stretch in curve(y):
@@ -213,7 +213,7 @@ def _shades(shades: Sequence[Shade], begin_s: float, end_s: float) -> list[Eleme
 
 
 def _heights(low: float, high: float) -> list[Element]:
-    """The values beside the plot."""
+    """Return the values beside the plot."""
     return [
         e(
             "span",
@@ -226,7 +226,7 @@ def _heights(low: float, high: float) -> list[Element]:
 
 
 def _level_names(levels: Sequence[tuple[float, str]], low: float, high: float) -> list[Element]:
-    """What the levels are called, where there is room for it."""
+    """Return what the levels are called, where there is room for it."""
     named = sorted((value, name) for value, name in levels if name and low < value < high)
     gaps = [after - before for (before, _), (after, _) in itertools.pairwise(named)]
     if any(gap < LEAST_APART * (high - low) for gap in gaps):
@@ -236,14 +236,14 @@ def _level_names(levels: Sequence[tuple[float, str]], low: float, high: float) -
     ]
 
 
-def _mark(mark: Mark, begin_s: float, end_s: float) -> Element:
-    """A numbered flag at the top of a chart."""
+def _mark(mark: Flag, begin_s: float, end_s: float) -> Element:
+    """Return a numbered flag at the top of a chart."""
     at = share(mark.t_s, begin_s, end_s)
     style = "flag" if mark.scored else "flag faint"
     return e("a", mark.label, href=mark.href, class_=style, title=mark.title, style=f"left:{at}")
 
 
-def _legend(line: Line) -> Element:
-    """A sample of a curve and its name."""
+def _legend(line: Curve) -> Element:
+    """Return a sample of a curve and its name."""
     sample = e("svg", e("path", d="M0 5H26", class_=f"line {line.style}"), viewBox="0 0 26 10", class_="sample")
     return e("span", sample, line.name, class_="legend")

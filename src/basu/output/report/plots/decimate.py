@@ -1,4 +1,4 @@
-"""Fewer points for the same picture, in linear time: curves keep their extremes, paths stay within a tolerance."""
+"""Fewer points for the same picture: curves keep their extremes, paths stay within a tolerance."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from shapely import LineString, get_coordinates
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,7 +15,7 @@ BUCKETS = 700  # about one for each pixel column of a chart
 
 
 def curve(values: NDArray[np.float64], buckets: int = BUCKETS) -> list[NDArray[np.int64]]:
-    """Which of ``values`` (T,) to draw: one array of indices for each stretch without nan.
+    """Return which of ``values`` (T,) to draw: one array of indices for each stretch without nan.
 
     A stretch keeps its ends, and of each bucket the least and the greatest value, so no extreme is lost.
     """
@@ -43,53 +44,8 @@ def _stretch(values: NDArray[np.float64], width: int) -> NDArray[np.int64]:
 
 
 def path(points_m: NDArray[np.float64], tolerance_m: float) -> list[tuple[float, float]]:
-    """The polyline through ``points_m`` (N, 2) with fewer points, within the tolerance of all those given.
-
-    Sleeve fitting, Zhao and Saalfeld 1997, "Linear-time sleeve-fitting polyline simplification algorithms": from an
-    anchor on, each point leaves a sector of directions that pass it within the tolerance; where a point lies outside
-    of all sectors before it, or comes back towards the anchor, the point before it becomes the next anchor.
-    """
-    points = [(float(x_m), float(y_m)) for x_m, y_m in points_m[:, :2].tolist()]
-    if len(points) <= 2:
-        return points
-    kept = [points[0]]
-    anchor = before = points[0]
-    sleeve = _Sleeve(anchor, tolerance_m)
-    for point in points[1:]:
-        if not sleeve.takes(point):
-            kept.append(before)
-            anchor = before
-            sleeve = _Sleeve(anchor, tolerance_m)
-            sleeve.takes(point)
-        before = point
-    kept.append(before)
-    return kept
-
-
-class _Sleeve:
-    """The directions in which a straight line from the anchor passes all points until now."""
-
-    def __init__(self, anchor_m: tuple[float, float], tolerance_m: float) -> None:
-        self._x_m, self._y_m = anchor_m
-        self._tolerance_m = tolerance_m
-        self._middle_rad: float | None = None  # the first direction; the bounds are relative to it
-        self._low_rad, self._high_rad = -math.inf, math.inf
-        self._reach_m = 0.0
-
-    def takes(self, point_m: tuple[float, float]) -> bool:
-        """Narrow the sleeve to ``point_m``; False where it does not fit in."""
-        east_m, south_m = point_m[0] - self._x_m, point_m[1] - self._y_m
-        distance_m = math.hypot(east_m, south_m)
-        if distance_m <= self._tolerance_m:
-            return self._reach_m == 0.0  # it has come back: what was farther away must not be lost
-        heading_rad = math.atan2(south_m, east_m)
-        if self._middle_rad is None:
-            self._middle_rad = heading_rad
-        turn_rad = math.remainder(heading_rad - self._middle_rad, math.tau)
-        if distance_m < self._reach_m - self._tolerance_m or not self._low_rad <= turn_rad <= self._high_rad:
-            return False
-        half_rad = math.asin(self._tolerance_m / distance_m)
-        self._low_rad = max(self._low_rad, turn_rad - half_rad)
-        self._high_rad = min(self._high_rad, turn_rad + half_rad)
-        self._reach_m = max(self._reach_m, distance_m)
-        return True
+    """Return the polyline through ``points_m`` (N, 2) with fewer points, within the tolerance of all those given."""
+    points = points_m[:, :2]
+    if len(points) > 2:
+        points = get_coordinates(LineString(points).simplify(tolerance_m, preserve_topology=False))
+    return [(x_m, y_m) for x_m, y_m in points.tolist()]

@@ -10,7 +10,7 @@ from basu.metrics.passengers import felt
 from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.speeding import limits_mps
-from basu.output.report.plots.chart import Line, Mark, Shade, chart
+from basu.output.report.plots.chart import Curve, Flag, Shade, chart
 from basu.output.report.templates import e
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Signals(NamedTuple):
 
 
 def signals(history: History) -> Signals:
-    """The signals of a record; accelerations and jerk are those at a standing passenger's place, filtered."""
+    """Return the signals of a record; accelerations and jerk are those at a standing passenger's place, filtered."""
     frames = history.frames
     sensed = felt(history)
     unknown = np.full(len(frames), np.nan)  # a record too short to feel anything
@@ -71,7 +71,7 @@ FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
 
 
 def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
-    """All charts of a run."""
+    """Return all charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
         "section",
@@ -80,8 +80,8 @@ def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
         chart(
             felt.t_s,
             [
-                Line("along, + forward", felt.along_mps2, "first"),
-                Line("across, + to the right", felt.across_mps2, "second"),
+                Curve("along, + forward", felt.along_mps2, "first"),
+                Curve("across, + to the right", felt.across_mps2, "second"),
             ],
             title="Acceleration",
             marks=_flags(f for f in found if f.kind in FELT_KINDS),
@@ -93,7 +93,7 @@ def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
         ),
         chart(
             felt.t_s,
-            [Line("along", felt.jerk_mps3, "first")],
+            [Curve("along", felt.jerk_mps3, "first")],
             title="Jerk",
             unit="m/s³",
             id_="jerk",
@@ -109,11 +109,11 @@ def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
     )
 
 
-def _speed(felt: Signals, by_hand: Sequence[Shade], flags: Sequence[Mark]) -> Element:
+def _speed(felt: Signals, by_hand: Sequence[Shade], flags: Sequence[Flag]) -> Element:
     """Speed against the posted limit, with the infractions where they happened."""
     over = felt.speed_mps > np.where(np.isnan(felt.limit_mps), np.inf, felt.limit_mps + TOLERANCE_MPS)
     shades = [*by_hand, *(Shade(begin_s, end_s, "over") for begin_s, end_s in stretches(over, felt.t_s))]
-    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    curves = [Curve("driven", felt.speed_mps, "first"), Curve("limit", felt.limit_mps, "limit", steps=True)]
     return chart(felt.t_s, curves, title="Speed", unit="m/s", id_="speed", shades=shades, marks=flags)
 
 
@@ -123,10 +123,10 @@ def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Elemen
         title, values = "Distance to the lane's middle", felt.offset_m
     else:
         title, values = "Distance to the planned line", history.frames["lateral_m"].astype(np.float64)
-    curves = [Line("+ to the right", values, "first")]
+    curves = [Curve("+ to the right", values, "first")]
     return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
 
 
-def _flags(found: Iterable[Event]) -> list[Mark]:
+def _flags(found: Iterable[Event]) -> list[Flag]:
     """Flags that open the evidence."""
-    return [Mark(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]
+    return [Flag(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

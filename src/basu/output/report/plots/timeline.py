@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CROWDED, LOWER_PX = 0.02, 14  # marks nearer than this share of the time are shown lower, by so much
 
 
-class Span(NamedTuple):
+class TimelineSpan(NamedTuple):
     """From when to when something lasted."""
 
     begin_s: float
@@ -33,7 +33,7 @@ class Span(NamedTuple):
 
 
 def timeline(history: History, felt: Signals, document: dict[str, Any], found: Sequence[Event]) -> Element:
-    """All rows; ``document`` is the run's result."""
+    """Return all rows; ``document`` is the run's result."""
     begin_s, end_s = float(felt.t_s[0]), max(float(felt.t_s[-1]), float(felt.t_s[0]) + 1e-3)
     rows = [
         ("infractions", _marks([f for f in found if f.factor is not None], begin_s, end_s)),
@@ -43,7 +43,9 @@ def timeline(history: History, felt: Signals, document: dict[str, Any], found: S
         ("standing", _spans(_standing(felt), begin_s, end_s)),
         (
             "by hand",
-            _spans([Span(*s, "manual", "", _lasted("driven by hand", *s)) for s in _by_hand(felt)], begin_s, end_s),
+            _spans(
+                [TimelineSpan(*s, "manual", "", _lasted("driven by hand", *s)) for s in _by_hand(felt)], begin_s, end_s
+            ),
         ),
         ("lane lines crossed", _invasions(history, begin_s, end_s)),
     ]
@@ -58,7 +60,7 @@ def timeline(history: History, felt: Signals, document: dict[str, Any], found: S
 
 
 def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element]:
-    """A mark for each, a link to its evidence."""
+    """Return a mark for each, a link to its evidence."""
     placed, last_share, height = [], -1.0, 0
     for event in sorted(found, key=lambda event: event.t_s):
         at = (event.t_s - begin_s) / (end_s - begin_s)
@@ -69,7 +71,7 @@ def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element
 
 
 def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> list[Element]:
-    """Every stop sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
+    """Return every stop sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
     return [
         e(
             "span",
@@ -83,31 +85,32 @@ def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> lis
     ]
 
 
-def _services(history: History, felt: Signals) -> list[Span]:
+def _services(history: History, felt: Signals) -> list[TimelineSpan]:
     """At rest at a service stop."""
     found = []
     standing = felt.speed_mps < AT_REST_MPS
     for stop in history.facts.route.stops:
         here = standing & serving(history, stop.s_m)
         found += [
-            Span(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s)) for s in stretches(here, felt.t_s)
+            TimelineSpan(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s))
+            for s in stretches(here, felt.t_s)
         ]
     return sorted(found)
 
 
-def _standing(felt: Signals) -> list[Span]:
+def _standing(felt: Signals) -> list[TimelineSpan]:
     """At rest, wherever."""
     at_rest = stretches(felt.speed_mps < AT_REST_MPS, felt.t_s)
-    return [Span(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
+    return [TimelineSpan(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
 
 
 def _by_hand(felt: Signals) -> list[tuple[float, float]]:
-    """A person drove."""
+    """Return the stretches of time in which a person drove."""
     return stretches(felt.manual, felt.t_s)
 
 
 def _invasions(history: History, begin_s: float, end_s: float) -> list[Element]:
-    """A stroke for each lane invasion."""
+    """Return a stroke for each lane invasion."""
     return [
         e(
             "i",
@@ -119,7 +122,7 @@ def _invasions(history: History, begin_s: float, end_s: float) -> list[Element]:
     ]
 
 
-def _spans(spans: Sequence[Span], begin_s: float, end_s: float) -> list[Element]:
+def _spans(spans: Sequence[TimelineSpan], begin_s: float, end_s: float) -> list[Element]:
     """Bars; the shortest can still be seen."""
     return [
         e(
@@ -135,5 +138,5 @@ def _spans(spans: Sequence[Span], begin_s: float, end_s: float) -> list[Element]
 
 
 def _lasted(what: str, begin_s: float, end_s: float) -> str:
-    """A stretch in words."""
+    """Return a stretch of time in words."""
     return f"{what} from {begin_s:.1f} s to {end_s:.1f} s"

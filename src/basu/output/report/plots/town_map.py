@@ -34,7 +34,7 @@ STACKED_PX, SERVICE_PX = 22, 17
 
 
 def town_map(history: History, streets: Sequence[Line], found: Sequence[Event]) -> Element:
-    """The whole map; its lines have ids, so that close-ups use them again."""
+    """Return the whole map; its lines have ids, so that close-ups use them again."""
     bounds = bounds_of(history)
     frame = e("div", class_="map", id="map", style=box(bounds))
     frame.append(
@@ -62,7 +62,7 @@ def town_map(history: History, streets: Sequence[Line], found: Sequence[Event]) 
 def plain_map(
     history: History, streets: Sequence[Line], bounds: Bounds, places: Sequence[tuple[Element, float, float]]
 ) -> Element:
-    """A small map without words: paths on streets, with symbols at places (x, y in m)."""
+    """Return a small map without words: paths on streets, with symbols at places (x, y in m)."""
     picture = e(
         "svg",
         e("title", "Map of the planned and the driven path"),
@@ -82,7 +82,7 @@ def plain_map(
 
 
 def paths(history: History) -> list[Element]:
-    """The plan, wide and pale, and on it the drive."""
+    """Return the plan, wide and pale, and on it the drive."""
     frames = history.frames
     driven_m = on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))
     return [
@@ -99,29 +99,29 @@ def lines(found: Sequence[Sequence[tuple[float, float]]]) -> str:
 
 
 def view(bounds: Bounds) -> str:
-    """What an SVG shows."""
+    """Return the view box of a map's SVG."""
     return " ".join(number(v, 1) for v in (bounds.west_m, bounds.north_m, bounds.width_m, bounds.height_m))
 
 
 def box(bounds: Bounds, width_px: float = GREATEST_WIDTH_PX, height_px: float = GREATEST_HEIGHT_PX) -> str:
-    """The shape and the greatest size of a map, in CSS."""
+    """Return the shape and the greatest size of a map, in CSS."""
     ratio = bounds.width_m / bounds.height_m
     return f"--ratio:{number(ratio, 4)};max-width:{number(min(width_px, height_px * ratio), 0)}px"
 
 
 def place(x_m: float, y_m: float, bounds: Bounds) -> str:
-    """Where something lies on a map, in CSS."""
+    """Return where something lies on a map, in CSS."""
     left, top = (x_m - bounds.west_m) / bounds.width_m, (y_m - bounds.north_m) / bounds.height_m
     return f"left:{percent(left)};top:{percent(top)}"
 
 
 def _word(text: str, x_m: float, y_m: float, bounds: Bounds, style: str, title: str, up_px: int = 0) -> Element:
-    """A small label at a place, or so far above it."""
+    """Return a small label at a place, or so far above it."""
     return e("span", text, class_=f"at {style}", title=title, style=f"{place(x_m, y_m, bounds)};--up:{up_px}px")
 
 
 def _services(history: History, bounds: Bounds) -> list[Element]:
-    """The service stops of the route by name."""
+    """Return the service stops of the route by name."""
     stops = history.facts.route.stops
     heights = _stacked([(stop.x_m, stop.y_m) for stop in stops], bounds)
     return [
@@ -133,14 +133,14 @@ def _services(history: History, bounds: Bounds) -> list[Element]:
 
 
 def _stacked(places_m: Sequence[tuple[float, float]], bounds: Bounds) -> list[int]:
-    """How many of the places before each lie so near that it has to be shown above them."""
+    """Return how many of the places before each lie so near that it has to be shown above them."""
     near_m = CROWDED * max(bounds.width_m, bounds.height_m)
     seen: NDArray[np.float64] = np.array(places_m, dtype=np.float64).reshape(-1, 2)
     return [int(np.count_nonzero(np.hypot(*(seen[:index] - seen[index]).T) < near_m)) for index in range(len(places_m))]
 
 
 def _signs(history: History, bounds: Bounds) -> list[Element]:
-    """The stop signs of the route, each once."""
+    """Return the stop signs of the route, each once."""
     signs = {c.landmark_id: c for c in history.facts.route.controls if c.kind is ControlKind.STOP_SIGN}
     return [
         e("i", class_="at sign", title=f"stop sign {sign.landmark_id}", style=place(sign.x_m, sign.y_m, bounds))
@@ -149,7 +149,7 @@ def _signs(history: History, bounds: Bounds) -> list[Element]:
 
 
 def _marks(found: Sequence[Event], bounds: Bounds) -> list[Element]:
-    """A mark for each event, those at one place stacked, each a link to its evidence."""
+    """Return a mark for each event, those at one place stacked, each a link to its evidence."""
     heights = _stacked([(event.x_m, event.y_m) for event in found], bounds)
     return [
         events.link(event, f"{place(event.x_m, event.y_m, bounds)};--up:{STACKED_PX * height}px")
@@ -158,7 +158,7 @@ def _marks(found: Sequence[Event], bounds: Bounds) -> list[Element]:
 
 
 def _scale(bounds: Bounds) -> Element:
-    """A length to compare with, and where north is."""
+    """Return a length to compare with, and where north is."""
     length_m = ticks(0.0, bounds.width_m, 5)[1]
     return e(
         "div",

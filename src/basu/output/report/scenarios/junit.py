@@ -24,7 +24,7 @@ MESSAGE_CHARACTERS = 300  # of the line that stands in a list of tests
 
 
 def junit_xml(matrix: dict[str, Any]) -> bytes:
-    """A matrix as JUnit's XML."""
+    """Return a matrix as JUnit's XML."""
     root = Element("testsuites")
     for number, agent in enumerate(matrix["agents"]):
         root.append(_suite(matrix, agent, number))
@@ -33,7 +33,7 @@ def junit_xml(matrix: dict[str, Any]) -> bytes:
 
 
 def _suite(matrix: dict[str, Any], agent: str, number: int) -> Element:
-    """All cases of one agent."""
+    """Return all cases of one agent."""
     found = [(case, case["results"][agent]) for case in matrix["cases"] if agent in case["results"]]
     verdicts = [result["verdict"] for _, result in found]
     suite = Element(
@@ -88,7 +88,7 @@ def _test(case: dict[str, Any], result: dict[str, Any], agent: str) -> Element:
 
 
 def _evidence(case: dict[str, Any], result: dict[str, Any]) -> Sequence[str]:
-    """The lines that stand with a test that was not passed."""
+    """Return the lines that stand with a test that was not passed."""
     parameters = ", ".join(
         f"{parameter['name']} {_value(parameter['value'])} {parameter['unit']}".rstrip()
         for parameter in case["parameters"]
@@ -124,13 +124,13 @@ def _value(value: float | str) -> str:
 
 
 def _timestamp(started: str) -> str:
-    """A time as the schema has it: to the second, without a zone."""
+    """Return a time as the schema has it: to the second, without a zone."""
     found = re.match(r"(\d{4}-\d{2}-\d{2})[T ](\d{2})[:-](\d{2})[:-](\d{2})", started)
     return "1970-01-01T00:00:00" if found is None else f"{found[1]}T{found[2]}:{found[3]}:{found[4]}"
 
 
 def _token(text: str) -> str:
-    """A name without line ends and doubled blanks, never empty."""
+    """Return a name without line ends and doubled blanks, never empty."""
     return " ".join(_plain(text).split()) or "_"
 
 

@@ -44,7 +44,7 @@ class CaseRecord:
 
 
 def read_matrix(folder: Path) -> dict[str, Any]:
-    """The matrix of a run's folder.
+    """Return the matrix of a run's folder.
 
     Raises:
         UserError: there is none, or it is not what it should be.
@@ -53,7 +53,7 @@ def read_matrix(folder: Path) -> dict[str, Any]:
 
 
 def read_case(folder: Path) -> CaseRecord:
-    """What lies in the folder of a case.
+    """Return what lies in the folder of a case.
 
     Raises:
         UserError: it is none, or one of its files is not what it should be.
@@ -97,7 +97,7 @@ def _too_old(path: Path) -> str:
 
 
 def _read(path: Path, schema: str) -> dict[str, Any]:
-    """A document, checked; the first version has no verdict by the policy and cannot be shown.
+    """Return a document, checked; the first version has no verdict by the policy and cannot be shown.
 
     Raises:
         UserError: it is none, or not what it should be.

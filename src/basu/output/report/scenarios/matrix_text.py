@@ -52,7 +52,7 @@ def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
 
 
 def _headline(matrix: dict[str, Any]) -> str:
-    """What was driven, how often and how long it took."""
+    """Return what was driven, how often and how long it took."""
     drives = sum(len(case["results"]) for case in matrix["cases"])
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
     lasted = f"{minutes} min {seconds} s" if minutes else f"{seconds} s"
@@ -83,7 +83,7 @@ def _columns(matrix: dict[str, Any], agents: Sequence[str]) -> dict[str, list[Ce
 
 
 def _cell(found: Tally) -> Cell:
-    """The text of a cell."""
+    """Return the text of a cell."""
     signs = ((found.agent_faults, "!"), (found.absent, "○"), (found.unjudged, "?"))
     marks = [f"{count}{sign}" for count, sign in signs if count]
     all_passed = found.passed == found.judged
@@ -97,7 +97,7 @@ def _cell(found: Tally) -> Cell:
 
 
 def _widths(cells: Iterable[Cell]) -> tuple[int, int, int, int]:
-    """How wide each part of a column is."""
+    """Return how wide each part of a column is."""
     share, distance, time, marks = (
         max(len(part) for part in parts)
         for parts in zip(*((cell.share, cell.distance, cell.time, cell.marks) for cell in cells), strict=True)
@@ -125,7 +125,7 @@ def _table(matrix: dict[str, Any], agents: Sequence[str], *, colour: bool) -> st
 
 
 def _line(name: str, cells: Sequence[str]) -> str:
-    """A row: a name that is too long is cut."""
+    """Return a row: a name that is too long is cut."""
     return f"{_cut(name, NAME_WIDTH):<{NAME_WIDTH}}{GAP}{GAP.join(cells)}".rstrip()
 
 
@@ -134,7 +134,7 @@ def _cut(name: str, width: int) -> str:
 
 
 def _written(cell: Cell, widths: tuple[int, int, int, int], span: int, *, colour: bool) -> str:
-    """A cell with its parts at their places."""
+    """Return a cell with its parts at their places."""
     share = _painted(f"{cell.share:>{widths[0]}}", cell.colour, colour=colour)
     rest = f" {cell.distance:>{widths[1]}} {cell.time:>{widths[2]}} {cell.marks:<{widths[3]}}"
     return share + f"{rest:<{max(len(rest), span - widths[0])}}"
@@ -146,7 +146,7 @@ def _painted(text: str, colour_code: str, *, colour: bool) -> str:
 
 
 def _key(matrix: dict[str, Any]) -> str:
-    """What the parts of a cell are, as far as they occur."""
+    """Return what the parts of a cell are, as far as they occur."""
     verdicts = {result["verdict"] for case in matrix["cases"] for result in case["results"].values()}
     notes = ["passed of judged; of those passed, the least distance to any actor, and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:

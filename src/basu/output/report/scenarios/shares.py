@@ -29,7 +29,7 @@ BASELINE = (
 
 
 def shares_text(matrix: dict[str, Any]) -> str:
-    """A table of the shares, an agent a column, and the assumptions; nothing where there is nothing to weigh."""
+    """Return a table of the shares, an agent a column, and the assumptions; nothing where there is nothing to weigh."""
     if not is_weighed(matrix):
         return ""
     agents = controls_last(matrix["agents"])
@@ -49,34 +49,34 @@ def shares_text(matrix: dict[str, Any]) -> str:
 
 
 def is_weighed(matrix: dict[str, Any]) -> bool:
-    """Whether shares say more than the table does: at least two groups of the typology were played."""
+    """Return whether shares say more than the table does: at least two groups of the typology were played."""
     counts = [sum(group["burden"] is not None for group in share["groups"]) for share in matrix["shares"].values()]
     return max(counts, default=0) >= LEAST_GROUPS
 
 
 def assumptions(matrix: dict[str, Any]) -> list[str]:
-    """What the shares assume, each sentence once."""
+    """Return what the shares assume, each sentence once."""
     return list(dict.fromkeys(text for share in matrix["shares"].values() for text in share["assumptions"]))
 
 
 def controls_last(agents: list[str]) -> list[str]:
-    """The agents, control drivers behind the rest."""
+    """Return the agents, control drivers behind the rest."""
     return sorted(agents, key=lambda agent: agent in CONTROL_DRIVERS)
 
 
 def control_notes(agents: list[str]) -> list[str]:
-    """What the control drivers are, or how to add them."""
+    """Return what the control drivers are, or how to add them."""
     played = [f"{agent} {CONTROL_DRIVERS[agent]}" for agent in agents if agent in CONTROL_DRIVERS]
     return [f"control drivers: {', '.join(played)}."] if played else [BASELINE]
 
 
 def percent_of(share: float | None) -> str:
-    """A share as people read it."""
+    """Return a share as people read it."""
     return "-" if share is None else f"{100.0 * share:.0f} %"
 
 
 def interval(estimate: dict[str, float] | None) -> str:
-    """A share with its interval of 95 %."""
+    """Return a share with its interval of 95 %."""
     if estimate is None:
         return "-"
     return f"{percent_of(estimate['share'])} ({100.0 * estimate['low']:.0f}-{100.0 * estimate['high']:.0f})"
@@ -103,7 +103,7 @@ def _table(shares: dict[str, dict[str, Any]], title: str) -> str:
 
 
 def _line(name: str, cells: list[str]) -> str:
-    """A row of the table."""
+    """Return a row of the table."""
     return f"{name:<{NAME_WIDTH}}" + "".join(f"{cell:>{AGENT_WIDTH}}" for cell in cells)
 
 
@@ -111,7 +111,7 @@ MUSD_IN_BUSD = 1000.0
 
 
 def shares_view(matrix: dict[str, Any]) -> Markup | None:
-    """The section of a page; None where fewer than two groups were measured."""
+    """Return the section of a page; None where fewer than two groups were measured."""
     if not is_weighed(matrix):
         return None
     shares = {agent: matrix["shares"][agent] for agent in controls_last(matrix["agents"])}
@@ -148,14 +148,14 @@ def _score(agent: str, share: dict[str, Any]) -> dict[str, str]:
 
 
 def _words(cost: dict[str, float] | None) -> str:
-    """What the figure beside an agent's name is, with its interval."""
+    """Return what the figure beside an agent's name is, with its interval."""
     if cost is None:
         return "exercised no situation of the typology"
     return f"passed, of the crash cost of exercised situations ({100.0 * cost['low']:.0f}-{100.0 * cost['high']:.0f} %)"
 
 
 def _group_rows(shares: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
-    """A row for each group, with a cell for each agent."""
+    """Return a row for each group, with a cell for each agent."""
     burdens: dict[str, dict[str, Any] | None] = {}
     found: dict[tuple[str, str], dict[str, Any]] = {}
     for agent, share in shares.items():

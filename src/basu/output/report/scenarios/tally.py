@@ -81,7 +81,7 @@ def name_of(case: Mapping[str, Any]) -> str:
 
 
 def blocks(matrix: dict[str, Any]) -> list[Block]:
-    """The cases of a matrix by group and scenario, in the order in which they come."""
+    """Return the cases of a matrix by group and scenario, in the order in which they come."""
     found: dict[str, dict[str, Row]] = {}
     for case in matrix["cases"]:
         rows = found.setdefault(case["group"], {})
@@ -91,7 +91,7 @@ def blocks(matrix: dict[str, Any]) -> list[Block]:
 
 
 def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
-    """What one agent made of cases; those it has no result of are left out."""
+    """Return what one agent made of cases; those it has no result of are left out."""
     results = [case["results"][agent] for case in cases if agent in case["results"]]
     judged = [result for result in results if LOOKS[result["verdict"]].is_judged]
     passed = [result for result in judged if result["verdict"] == "SUCCESS"]
@@ -119,7 +119,7 @@ def tracks(matrix: dict[str, Any]) -> dict[str, str]:
 
 
 def judged_share(matrix: dict[str, Any]) -> str:
-    """What share of the suite was judged, passed or failed, for each agent: the rest counts as not passed."""
+    """Return what share of the suite was judged, passed or failed, for each agent: the rest counts as not passed."""
     cases = matrix["cases"]
     parts = []
     for agent in matrix["agents"]:
@@ -129,7 +129,7 @@ def judged_share(matrix: dict[str, Any]) -> str:
 
 
 def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
-    """The least of a margin, over results with one."""
+    """Return the least of a margin, over results with one."""
     found = [result["margins"].get(margin) for result in results]
     return min((value for value in found if value is not None), default=None)
 

@@ -28,7 +28,7 @@ ROUND_HALF_M = 0.6  # an actor not longer than twice this has no visible front
 
 
 def body(box: Box, canvas: Canvas, style: str) -> Element:
-    """A vehicle, pointed at its front; a circle for a person on foot."""
+    """Return a vehicle, pointed at its front; a circle for a person on foot."""
     x_m, y_m, _, half_length_m, half_width_m = box.tolist()
     if max(half_length_m, half_width_m) <= ROUND_HALF_M:
         x, y = canvas.at(x_m, y_m)
@@ -43,7 +43,7 @@ def block(box: Box, canvas: Canvas, style: str) -> Element:
 
 
 def outline(box: Box, canvas: Canvas, nose: float) -> list[Point]:
-    """The corners in pixels, front left first; ``nose`` is where on its half length a box begins to narrow."""
+    """Return the corners in pixels, front left first; ``nose`` is where on its half length a box begins to narrow."""
     x_m, y_m, yaw_rad, half_length_m, half_width_m = box.tolist()
     least_m = LEAST_HALF_PX / canvas.pixels_per_m
     long_m, wide_m = max(half_length_m, least_m), max(half_width_m, least_m)
@@ -90,7 +90,7 @@ class Dot(NamedTuple):
 
 
 def own_trail(history: History, span: Span, canvas: Canvas) -> list[Element]:
-    """The ego's: a casing, and on it a stroke for each stretch of one speed band."""
+    """Return the trail of the ego: a casing, and on it a stroke for each stretch of one speed band."""
     frames = history.frames[span.first : span.last + 1]
     points_m = np.column_stack([frames["x_m"], frames["y_m"]])
     speed_mps = history.speed_mps()[span.first : span.last + 1]
@@ -103,12 +103,12 @@ def own_trail(history: History, span: Span, canvas: Canvas) -> list[Element]:
 
 
 def other_trail(x_m: NDArray[np.float64], y_m: NDArray[np.float64], canvas: Canvas) -> Element:
-    """The trail of another actor."""
+    """Return the trail of another actor."""
     return e("path", d=_whole(np.column_stack([x_m, y_m]), canvas), class_="way")
 
 
 def dots(t_s: NDArray[np.float64], x_m: NDArray[np.float64], y_m: NDArray[np.float64], canvas: Canvas) -> list[Dot]:
-    """An actor's places at whole seconds, as far as they are in the picture and apart from each other."""
+    """Return an actor's places at whole seconds, as far as they are in the picture and apart from each other."""
     found: list[Dot] = []
     last_m: Point | None = None
     for second in range(int(np.ceil(t_s[0] - 1e-6)), int(t_s[-1] + 1e-6) + 1):
@@ -135,7 +135,7 @@ def drawn(found: list[Dot], style: str, radius_px: float) -> list[Element]:
 
 
 def _whole(points_m: NDArray[np.float64], canvas: Canvas) -> str:
-    """A trail as a path with few points, as far as it comes into the picture."""
+    """Return a trail as a path with few points, as far as it comes into the picture."""
     finite = _moved(on_the_map(points_m))
     if len(finite) < 2:
         return ""

@@ -32,16 +32,16 @@ class Canvas(NamedTuple):
     height_px: float
 
     def at(self, x_m: Metres, y_m: Metres) -> tuple[Metres, Metres]:
-        """A place in pixels, or many."""
+        """Return a place in pixels, or many."""
         return (x_m - self.west_m) * self.pixels_per_m, (y_m - self.north_m) * self.pixels_per_m
 
     def line(self, points_m: Iterable[Point]) -> str:
-        """A polyline as SVG writes it, to a tenth of a pixel."""
+        """Return a polyline as SVG writes it, to a tenth of a pixel."""
         placed = (self.at(x_m, y_m) for x_m, y_m in points_m)
         return "M" + " ".join(f"{number(x, 1)} {number(y, 1)}" for x, y in placed)
 
     def shows(self, x_px: float, y_px: float, margin_px: float = 0.0) -> bool:
-        """Whether a place in pixels is in the picture, so far from its edge."""
+        """Return whether a place in pixels is in the picture, so far from its edge."""
         return margin_px <= x_px <= WIDTH_PX - margin_px and margin_px <= y_px <= self.height_px - margin_px
 
     def pieces(self, line_m: NDArray[np.float64], margin_m: float = 6.0) -> list[list[Point]]:
@@ -59,7 +59,7 @@ class Canvas(NamedTuple):
 
 
 def canvas_for(points_m: NDArray[np.float64]) -> Canvas:
-    """The picture that shows all the points (N, 2), not too small and of a shape that fits on a page."""
+    """Return the picture that shows all the points (N, 2), not too small and of a shape that fits on a page."""
     low, high = points_m.min(axis=0) - MARGIN_M, points_m.max(axis=0) + MARGIN_M
     width_m, height_m = np.maximum(high - low, [LEAST_M, 0.0]).tolist()
     width_m = max(width_m, height_m * WIDTH_PX / GREATEST_HEIGHT_PX)
@@ -70,7 +70,7 @@ def canvas_for(points_m: NDArray[np.float64]) -> Canvas:
 
 
 def what_matters(story: CaseData) -> NDArray[np.float64]:
-    """The points (N, 2) that a picture is to show: the drive and the scenario's actors around the encounter."""
+    """Return the points (N, 2) that a picture is to show: the drive and the scenario's actors around the encounter."""
     history, span, met = story.history, story.span, story.met
     frames = history.frames[span.first : span.last + 1]
     own_m = np.column_stack([frames["x_m"], frames["y_m"]])
@@ -91,6 +91,6 @@ def what_matters(story: CaseData) -> NDArray[np.float64]:
 
 
 def _near(points_m: NDArray[np.float64], middle_m: NDArray[np.float64], reach_m: float) -> NDArray[np.float64]:
-    """Those of the points within a distance of the middle, and the middle."""
+    """Return those of the points within a distance of the middle, and the middle."""
     away_m = np.hypot(*(points_m - middle_m).T)
     return np.concatenate([points_m[away_m <= reach_m], [middle_m]])

@@ -56,13 +56,13 @@ def inset(story: CaseData, canvas: Canvas, streets: Sequence[Line]) -> Inset | N
 
 
 def _lanes(close: Canvas, streets: Sequence[Line]) -> Element:
-    """The lanes in the inset."""
+    """Return the lanes in the inset."""
     lines = [close.line(piece) for lane in streets if len(lane) > 1 for piece in close.pieces(np.array(lane), 2.0)]
     return e("path", d="".join(lines) or None, class_="lane", stroke_width=LANE_M * close.pixels_per_m)
 
 
 def _bodies(story: CaseData, close: Canvas, met: Encounter) -> list[Element]:
-    """All actors in it, and the distance between the two."""
+    """Return all actors in it, and the distance between the two."""
     t_s = float(story.history.frames["t_s"][met.tick])
     things = [block(box, close, "thing") for _, box in thing_boxes(story.result, t_s) if _is_in(box, close)]
     others = [
@@ -78,7 +78,7 @@ def _bodies(story: CaseData, close: Canvas, met: Encounter) -> list[Element]:
 
 
 def _is_in(box: Box, close: Canvas) -> bool:
-    """Whether some of it can be seen."""
+    """Return whether some of it can be seen."""
     across, down = zip(*outline(box, close, 1.0), strict=True)
     return bool(max(across) > 0.0 and min(across) < INSET_PX[0] and max(down) > 0.0 and min(down) < close.height_px)
 

@@ -150,7 +150,7 @@ def legend(top_px: float, shown: set[str]) -> Element:
 
 
 def scale(canvas: Canvas) -> list[Element]:
-    """A length, and where north is."""
+    """Return a length, and where north is."""
     length_m = ticks(0.0, WIDTH_PX / canvas.pixels_per_m, 6)[1]
     length_px, y = length_m * canvas.pixels_per_m, canvas.height_px - 12.0
     return [
@@ -161,7 +161,7 @@ def scale(canvas: Canvas) -> list[Element]:
 
 
 def _entry(group: Element, name: str, words: str, x: float, y: float) -> float:
-    """A sign with its meaning; returns where the next may begin."""
+    """Draw a sign with its meaning, and return where the next may begin."""
     signs = {
         "dot": lambda: e("circle", cx=x + 8.0, cy=y, r=2.6, class_="dot"),
         "way": lambda: e("path", d=f"M{number(x, 1)} {y}h18", class_="way"),
@@ -177,7 +177,7 @@ def _entry(group: Element, name: str, words: str, x: float, y: float) -> float:
 
 
 def cross(x: float, y: float) -> Element:
-    """The mark of a contact."""
+    """Return the mark of a contact."""
     arms = "".join(
         f"M{number(x + 7.0 * a, 1)} {number(y + 7.0 * b, 1)}L{number(x - 7.0 * a, 1)} {number(y - 7.0 * b, 1)}"
         for a, b in ((1, 1), (1, -1))

@@ -72,7 +72,7 @@ class Scene:
         ]
 
     def _ways(self) -> list[Element]:
-        """The trails of the ego and of the scenario's actors."""
+        """Return the trails of the ego and of the scenario's actors."""
         story, canvas = self._story, self._canvas
         history, span = story.history, story.span
         drawn: list[Element] = []
@@ -93,7 +93,7 @@ class Scene:
         return [*drawn, *actors.own_trail(history, span, canvas), *actors.drawn(found, "dot", 2.6)]
 
     def _moment(self) -> list[Element]:
-        """All actors at the moment of the least distance, and the distance as a line."""
+        """Return all actors at the moment of the least distance, and the distance as a line."""
         story, canvas, labels = self._story, self._canvas, self._labels
         begun = [] if story.conflict_tick is None else [self._ghost(story.conflict_tick)]
         met = story.met
@@ -113,7 +113,7 @@ class Scene:
         return [*begun, *things, *drawn, *([] if met is None else self._gap(met))]
 
     def _ghost(self, tick: int) -> Element:
-        """Where the ego was when the conflict began."""
+        """Return where the ego was when the conflict began."""
         box = self._story.own_box(tick)
         placed = self._canvas.at(float(box[0]), float(box[1]))
         if self._canvas.shows(*placed):
@@ -121,7 +121,7 @@ class Scene:
         return body(box, self._canvas, "ghost")
 
     def _gap(self, met: Encounter) -> list[Element]:
-        """The least distance, as a line and in words."""
+        """Return the least distance, as a line and in words."""
         canvas = self._canvas
         ends = [canvas.at(*met.own_m), canvas.at(*met.theirs_m)]
         t_s = float(self._story.history.frames["t_s"][met.tick])
@@ -145,7 +145,7 @@ class Scene:
         return [e("path", d=line, class_="gap under"), e("path", d=line, class_="gap")]
 
     def _contacts(self) -> list[Element]:
-        """A cross at each first touch, the first with its words."""
+        """Return a cross at each first touch, the first with its words."""
         drawn = []
         for number_, contact in enumerate(self._story.touched):
             placed = self._canvas.at(*contact.at_m)

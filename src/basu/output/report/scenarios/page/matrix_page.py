@@ -66,7 +66,7 @@ def write_matrix_page(folder: Path, matrix: dict[str, Any]) -> None:
 
 
 def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | str]) -> bytes:
-    """The page; ``record`` finds what a case left, or says why there is nothing."""
+    """Return the page; ``record`` finds what a case left, or says why there is nothing."""
     cells = chosen(matrix)
     carded = {anchor_of(name_of(cell.case), cell.agent) for cell in cells}
     cards = _cards(cells, record)
@@ -97,7 +97,7 @@ def _looks() -> dict[str, Any]:
 
 
 def chosen(matrix: dict[str, Any]) -> list[Cell]:
-    """The cases with cards in the page: all, or the most telling ones."""
+    """Return the cases with cards in the page: all, or the most telling ones."""
     cells = [Cell(case, agent) for case in matrix["cases"] for agent in matrix["agents"] if agent in case["results"]]
     if len(cells) <= MOST_CARDS:
         return cells
@@ -138,12 +138,12 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dic
 
 
 def _sentence(text: str) -> str:
-    """A text with a capital letter and a full stop."""
+    """Return a text with a capital letter and a full stop."""
     return f"{text[:1].upper()}{text[1:]}."
 
 
 def _summary(matrix: dict[str, Any]) -> str:
-    """What was driven, when and with what."""
+    """Return what was driven, when and with what."""
     drives = sum(len(case["results"]) for case in matrix["cases"])
     versions = ", ".join(f"{name} {text}" for name, text in matrix["versions"].items())
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
@@ -152,7 +152,7 @@ def _summary(matrix: dict[str, Any]) -> str:
 
 
 def _sweeps(matrix: dict[str, Any]) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """Each sampled scenario with a map for each agent."""
+    """Yield each sampled scenario with a map for each agent."""
     found = studies(matrix)
     for scenario in dict.fromkeys(study.scenario for study in found):
         known = {study.agent: boundary_of(study) for study in found if study.scenario == scenario}
@@ -170,12 +170,12 @@ def _sweeps(matrix: dict[str, Any]) -> Iterator[tuple[str, list[dict[str, Any]]]
 
 
 def _heading(track: str, groups: Mapping[str, Sequence[str]]) -> str:
-    """The heading of a track's table; empty where the only track is not known."""
+    """Return the heading of a track's table; empty where the only track is not known."""
     return titled(track) if track or len(groups) > 1 else ""
 
 
 def _table(matrix: dict[str, Any], agents: Sequence[str], carded: Collection[str], title: str) -> dict[str, Any]:
-    """The table of the agents of one track."""
+    """Return the table of the agents of one track."""
     return {
         "title": title,
         "agents": agents,
@@ -198,7 +198,7 @@ def _table(matrix: dict[str, Any], agents: Sequence[str], carded: Collection[str
 
 
 def _cases(block: Block, cards: dict[str, list[Markup]]) -> dict[str, Any]:
-    """A group with its scenarios: the cases that have cards."""
+    """Return a group with its scenarios: the cases that have cards."""
     rows = []
     for row in block.rows:
         shown = [case for case in row.cases if name_of(case) in cards]
@@ -222,7 +222,7 @@ def _cell(cases: Sequence[dict[str, Any]], agent: str, carded: Collection[str]) 
 
 
 def _total(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
-    """How many were passed, and how narrowly."""
+    """Return how many were passed, and how narrowly."""
     found = tally(cases, agent)
     narrowly = [found.narrowest, "" if found.ttc_s is None else f"{found.ttc_s:.1f} s"]
     absent = f"{found.absent} not exercised" if found.absent else ""
@@ -243,7 +243,7 @@ def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> dict[str
 
 
 def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
-    """The header of each case, by its id: its place, and for samples of one place their own values."""
+    """Return the header of each case, by its id: its place, and for samples of one place their own values."""
     by_place: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for case in cases:
         by_place[case["place"]].append(case)
@@ -257,13 +257,13 @@ def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
 
 
 def _value(parameter: dict[str, Any]) -> str:
-    """A parameter's value with its unit."""
+    """Return a parameter's value with its unit."""
     value = parameter["value"]
     return f"{value if isinstance(value, str) else f'{value:.4g}'} {parameter['unit']}".rstrip()
 
 
 def _case(case: dict[str, Any], header: str, cards: list[Markup]) -> dict[str, Any]:
-    """A case with the cards of all agents."""
+    """Return a case with the cards of all agents."""
     verdicts = [(LOOKS[result["verdict"]], agent) for agent, result in case["results"].items()]
     return {
         "id": name_of(case),
@@ -275,7 +275,7 @@ def _case(case: dict[str, Any], header: str, cards: list[Markup]) -> dict[str, A
 
 
 def _filters(matrix: dict[str, Any]) -> dict[str, dict[str, str]]:
-    """The values that the script filters by."""
+    """Return the values that the script filters by."""
     verdicts = dict.fromkeys(result["verdict"] for case in matrix["cases"] for result in case["results"].values())
     groups = dict.fromkeys(case["group"] for case in matrix["cases"])
     return {

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.sweep.failure_rates import Pair
+    from basu.output.report.scenarios.sweep.failure_rates import ParameterPair
     from basu.output.report.scenarios.sweep.study import Axis, Study
 
 
@@ -50,12 +50,12 @@ class Rule(NamedTuple):
         return self.log_chance < math.log(BY_CHANCE)
 
     def words(self) -> str:
-        """Where it fails, as a condition."""
+        """Return where it fails, as a condition."""
         unit = f" {self.axis.unit}" if self.axis.unit and not self.axis.options else ""
         return f"{self.axis.name} {self.condition()}{unit}"
 
     def condition(self) -> str:
-        """The same without name and unit."""
+        """Return the same without name and unit."""
         if self.axis.options:
             return f"is {' or '.join(self.options)}"
         if self.low == -math.inf:
@@ -66,14 +66,14 @@ class Rule(NamedTuple):
 
 
 def best_rule(axis: Axis, failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
-    """The best rule of a parameter over the cases ``among``; None where there is none to try."""
+    """Return the best rule of a parameter over the cases ``among``; None where there is none to try."""
     used = np.ones(len(failed), dtype=np.bool_) if among is None else among
     rules = _of_options(axis, failed, used) if axis.options else _of_numbers(axis, failed, used)
     return min(rules, key=lambda rule: rule.log_chance, default=None)
 
 
 def best_of(axes: Iterable[Axis], failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
-    """The best rule of all parameters that chance does not explain, the number of parameters counted."""
+    """Return the best rule of all parameters that chance does not explain, the number of parameters counted."""
     used = list(axes)
     rules = [rule for axis in used if (rule := best_rule(axis, failed, among)) is not None]
     rules = [rule._replace(log_chance=rule.log_chance + math.log(len(used))) for rule in rules]
@@ -81,7 +81,7 @@ def best_of(axes: Iterable[Axis], failed: NDArray[np.bool_], among: NDArray[np.b
 
 
 def _of_numbers(axis: Axis, failed: NDArray[np.bool_], used: NDArray[np.bool_]) -> list[Rule]:
-    """The best threshold and the best range, each against all of its kind."""
+    """Return the best threshold and the best range, each against all of its kind."""
     values, order = np.sort(axis.values[used]), np.argsort(axis.values[used], kind="stable")
     fails = np.concatenate([[0], np.cumsum(failed[used][order])])
     cuts, total = np.flatnonzero(np.diff(values) > 0.0) + 1, len(values)
@@ -139,7 +139,7 @@ def _rule(
     used: NDArray[np.bool_],
     log_chance: float,
 ) -> Rule:
-    """A rule with its counts."""
+    """Return a rule with the failures inside and outside of it."""
     return Rule(
         axis,
         low,
@@ -167,25 +167,15 @@ def _gains(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int, total
 
 
 def _log_chances(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int, total: int) -> NDArray[np.float64]:
-    """(K,) the logarithm of drawing at least so many failures, among so many cases, without any rule."""
-    factorials = np.concatenate([[0.0], np.cumsum(np.log(np.arange(1, total + 1)))])
+    """Return the logarithms (K,) of drawing at least so many failures, among so many cases, without any rule."""
+    from scipy.stats import hypergeom  # noqa: PLC0415 - 0.8 s, which a matrix without a sweep does without
 
-    def choose(n: NDArray[np.int64] | int, k: NDArray[np.int64]) -> NDArray[np.float64]:
-        ways: NDArray[np.float64] = factorials[n] - factorials[k] - factorials[n - k]
-        return ways
-
-    found = np.zeros(len(hits))
-    for index, (hit, draw) in enumerate(zip(hits.tolist(), drawn.tolist(), strict=True)):
-        possible = np.arange(hit, min(draw, failed) + 1)
-        possible = possible[draw - possible <= total - failed]
-        terms = choose(failed, possible) + choose(total - failed, draw - possible)
-        top = terms.max()
-        found[index] = top + math.log(np.exp(terms - top).sum()) - choose(total, np.array([draw]))[0]
-    return np.minimum(found, 0.0)
+    chances: NDArray[np.float64] = hypergeom.logsf(hits - 1, total, failed, drawn)
+    return np.minimum(chances, 0.0)
 
 
 def between(low: float, high: float) -> float:
-    """The shortest number between two."""
+    """Return the shortest number between two."""
     middle = (low + high) / 2.0
     for digits in range(MOST_DIGITS):
         candidate = round(middle, digits)
@@ -194,27 +184,27 @@ def between(low: float, high: float) -> float:
     return middle
 
 
-class Boundary(NamedTuple):
+class FailureBoundary(NamedTuple):
     """What is known about it."""
 
     study: Study
     rule: Rule | None  # of one parameter, if any tells the failures
     within: Rule | None  # a second one, of the cases that the first says will fail
     each: list[Rule]  # the best of every parameter, whether chance explains it or not
-    pair: Pair | None  # the two parameters of the map
+    pair: ParameterPair | None  # the two parameters of the map
 
 
-def boundary_of(study: Study) -> Boundary:
+def boundary_of(study: Study) -> FailureBoundary:
     """Look for it."""
     each = [rule for axis in study.axes if (rule := best_rule(axis, study.failed)) is not None]
     if not study.is_mixed:
-        return Boundary(study, None, None, each, best_pair(study))
+        return FailureBoundary(study, None, None, each, best_pair(study))
     rule = best_of(study.axes, study.failed)
     within = None
     if rule is not None:
         rest = [axis for axis in study.axes if axis.name != rule.axis.name]
         within = best_of(rest, study.failed, rule.inside)
-    return Boundary(study, rule, within, each, best_pair(study))
+    return FailureBoundary(study, rule, within, each, best_pair(study))
 
 
 def boundary(matrix: dict[str, Any]) -> list[str]:
@@ -226,8 +216,8 @@ def boundary(matrix: dict[str, Any]) -> list[str]:
     ]
 
 
-def sentences(found: Boundary) -> list[str]:
-    """What is known, in sentences that begin small, so that they can follow a name."""
+def sentences(found: FailureBoundary) -> list[str]:
+    """Return what is known, in sentences that begin small, so that they can follow a name."""
     study = found.study
     count, failed = len(study.failed), int(study.failed.sum())
     left = [f"{study.absent} more cases were not exercised and are left out."] if study.absent else []
@@ -248,7 +238,7 @@ def sentences(found: Boundary) -> list[str]:
 
 
 def _one(rule: Rule, outside: int) -> str:
-    """A rule of one parameter with its counts."""
+    """Return a rule of one parameter with its counts."""
     inside = int(rule.inside.sum())
     if 2 * rule.failed_inside < inside:
         return (
@@ -270,8 +260,8 @@ def _both(rule: Rule, within: Rule, study: Study) -> str:
     )
 
 
-def _pair_in_words(pair: Pair) -> str:
-    """The map's two parameters, and how far they can be trusted."""
+def _pair_in_words(pair: ParameterPair) -> str:
+    """Return the map's two parameters, and how far they can be trusted."""
     near = neighbours_of(pair.used)
     return (
         f"of all pairs, {pair.x.name} and {pair.y.name} predict best: {pair.right} of {pair.used} verdicts, each "

@@ -31,7 +31,7 @@ HALF = 0.5
 CERTAIN = 1e-3  # a share stays this far from 0 and 1, so that one mistake does not outweigh all
 
 
-class Pair(NamedTuple):
+class ParameterPair(NamedTuple):
     """Two parameters, and how well they predict verdicts."""
 
     x: Axis
@@ -49,12 +49,12 @@ class Pair(NamedTuple):
 
 
 def neighbours_of(count: int) -> int:
-    """How many neighbours weigh: about half the square root of all, 7 of 200."""
+    """Return how many neighbours weigh: about half the square root of all, 7 of 200."""
     return max(LEAST_NEIGHBOURS, round(math.sqrt(count) / 2.0))
 
 
-def best_pair(study: Study) -> Pair | None:
-    """The two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
+def best_pair(study: Study) -> ParameterPair | None:
+    """Return the two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
 
     What chance would do is known from the same cases with their verdicts dealt out anew, so many times: each time the
     best of all pairs counts, as it does here.
@@ -63,7 +63,7 @@ def best_pair(study: Study) -> Pair | None:
     failed = study.failed[chosen]
     dice = np.random.default_rng(DEALS)
     verdicts = np.column_stack([failed, *(dice.permutation(failed) for _ in range(DEALS))])  # (n, 1 + DEALS)
-    pairs: list[Pair] = []
+    pairs: list[ParameterPair] = []
     least = np.full(DEALS, np.inf)
     commoner = int(max(failed.sum(), (~failed).sum()))
     for x, y in itertools.combinations(study.axes[:MOST_AXES], 2):
@@ -74,7 +74,7 @@ def best_pair(study: Study) -> Pair | None:
         share = np.clip(share, CERTAIN, 1.0 - CERTAIN)
         losses = -np.where(verdicts, np.log(share), np.log1p(-share)).mean(axis=0)
         right = int(((share[:, 0] > HALF) == failed).sum())
-        pairs.append(Pair(x, y, right, len(failed), commoner, float(losses[0]), 1.0))
+        pairs.append(ParameterPair(x, y, right, len(failed), commoner, float(losses[0]), 1.0))
         least = np.minimum(least, losses[1:])
     if not pairs:
         return None
@@ -91,7 +91,7 @@ def shares(study: Study, x: Axis, y: Axis, at: NDArray[np.float64]) -> NDArray[n
 
 
 def _chosen(count: int) -> NDArray[np.int64]:
-    """Which cases are looked at."""
+    """Return which cases are looked at."""
     return np.arange(0, count, max(1, -(-count // MOST_CASES)))
 
 

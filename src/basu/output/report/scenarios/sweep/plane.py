@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from contourpy import FillType, LineType, contour_generator
 
 from basu.output.report.plots.chart import ticks
 from basu.output.report.templates import e, number
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from xml.etree.ElementTree import Element
 
     from numpy.typing import NDArray
@@ -23,8 +23,6 @@ GOLDEN = 0.6180339887498949  # spreads cases of one option evenly, in any number
 SPREAD = 0.55  # of the room that an option has
 
 LETTER_PX = 6.6  # the width of one, on average
-
-Place = tuple[float, float]
 
 
 class Scale(NamedTuple):
@@ -62,7 +60,7 @@ class Scale(NamedTuple):
         return placed
 
     def ticks(self) -> list[tuple[float, str]]:
-        """Where the axis is written on, and what."""
+        """Return the places of the axis with a text, and the texts."""
         if self.axis.options:
             numbers = np.arange(len(self.axis.options), dtype=np.float64)
             room = abs(self.end_px - self.begin_px) / len(self.axis.options)
@@ -75,12 +73,12 @@ class Scale(NamedTuple):
 
 
 def shortened(name: str, letters: int) -> str:
-    """A name in so much room: its end is kept, which tells cases of one scenario apart."""
+    """Return a name in so much room: its end is kept, which tells cases of one scenario apart."""
     return name if len(name) <= letters else f"…{name[-max(letters - 1, 1) :]}"
 
 
 def scales(x: Axis, y: Axis) -> tuple[Scale, Scale]:
-    """Both axes of the map."""
+    """Return both axes of the map."""
     return Scale(x, LEFT_PX, LEFT_PX + WIDTH_PX), Scale(y, TOP_PX + HEIGHT_PX, TOP_PX)
 
 
@@ -112,61 +110,23 @@ def _beside(text: str, place: float, *, is_name: bool) -> Element:
 
 
 def title(axis: Axis) -> str:
-    """A parameter with its unit."""
+    """Return a parameter with its unit."""
     return f"{axis.name}, {axis.unit}" if axis.unit else axis.name
 
 
 def region(share: NDArray[np.float64], level: float) -> tuple[str, str]:
-    """Paths of where a grid (R, C) over the plot is above a level: its area, and its edge within the plot.
-
-    Marching squares, Lorensen and Cline 1987 in the plane: each cell is cut by straight lines where its corners'
-    values, taken as linear along its sides, reach the level.
-    """
+    """Return paths of where a grid (R, C) over the plot is above a level: its area, and its edge within the plot."""
     rows, columns = share.shape
-    step_x, step_y = WIDTH_PX / (columns - 1), HEIGHT_PX / (rows - 1)
-    above = share > level
-    area, edge = [], []
-    for row in range(rows - 1):
-        full = above[row, :-1] & above[row, 1:] & above[row + 1, :-1] & above[row + 1, 1:]
-        for first, last in _stretches(full):
-            corner = f"{number(LEFT_PX + first * step_x, 1)} {number(TOP_PX + row * step_y, 1)}"
-            across, down = number((last - first) * step_x, 1), number(step_y, 1)
-            area.append(f"M{corner}h{across}v{down}h-{across}z")
-        part = (above[row, :-1] | above[row, 1:] | above[row + 1, :-1] | above[row + 1, 1:]) & ~full
-        for column in np.flatnonzero(part).tolist():
-            corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
-            values = [float(share[corner]) for corner in corners]
-            places = [(LEFT_PX + c * step_x, TOP_PX + r * step_y) for r, c in corners]
-            inside, cut = _cut(places, values, level)
-            area.append(f"M{_line(inside)}z")
-            edge += [f"M{_line(pair)}" for pair in cut]
-    return "".join(area), "".join(edge)
+    x, y = np.linspace(LEFT_PX, LEFT_PX + WIDTH_PX, columns), np.linspace(TOP_PX, TOP_PX + HEIGHT_PX, rows)
+    contours: Any = contour_generator(x, y, share, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
+    points, offsets = contours.filled(level, np.inf)
+    rings = [ring for each, ends in zip(points, offsets, strict=True) for ring in np.split(each, ends[1:-1])]
+    area = "".join(f"M{_line(ring)}z" for ring in rings)
+    return area, "".join(f"M{_line(line)}" for line in contours.lines(level))
 
 
-def _cut(places: list[Place], values: list[float], level: float) -> tuple[list[Place], list[list[Place]]]:
-    """The part of a cell that is above the level, and the lines that part it from the rest."""
-    inside: list[Place] = []
-    crossings: list[Place] = []
-    for index in range(4):
-        (ax, ay), (bx, by), a, b = places[index], places[(index + 1) % 4], values[index], values[(index + 1) % 4]
-        if a > level:
-            inside.append(places[index])
-        if (a > level) != (b > level):
-            share = (level - a) / (b - a)
-            crossing = (ax + share * (bx - ax), ay + share * (by - ay))
-            inside.append(crossing)
-            crossings.append(crossing)
-    return inside, [crossings[index : index + 2] for index in range(0, len(crossings) - 1, 2)]
-
-
-def _stretches(flags: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """Where flags are set without a gap, as (first, end)."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8))).reshape(-1, 2)
-    yield from ((first, end) for first, end in edges.tolist())
-
-
-def _line(places: list[Place]) -> str:
-    return " ".join(f"{number(x, 1)} {number(y, 1)}" for x, y in places)
+def _line(places: NDArray[np.float64]) -> str:
+    return " ".join(f"{number(x, 1)} {number(y, 1)}" for x, y in places.tolist())
 
 
 def grid(x: Scale, y: Scale, columns: int, rows: int) -> NDArray[np.float64]:

@@ -58,7 +58,7 @@ class Study(NamedTuple):
 
 
 def studies(matrix: dict[str, Any]) -> list[Study]:
-    """All of a matrix: of each scenario that was sampled, each agent."""
+    """Return all of a matrix: of each scenario that was sampled, each agent."""
     if matrix["sweep"] is None:
         return []
     found = []
@@ -95,7 +95,7 @@ def _study(scenario: str, agent: str, cases: list[dict[str, Any]]) -> Study | No
 
 
 def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
-    """Every parameter as a column, and last the case that was sampled: several may be, each at its place."""
+    """Return every parameter as a column, and last the case that was sampled: several may be, each at its place."""
     found = [
         _column(
             parameter["name"],
@@ -109,7 +109,7 @@ def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
 
 
 def _column(name: str, unit: str, about: str, values: list[float | str]) -> Axis:
-    """A parameter's values as numbers."""
+    """Return a parameter's values as numbers."""
     if not any(isinstance(value, str) for value in values):
         return Axis(name, unit, about, np.array(values, dtype=np.float64), ())
     options = tuple(sorted({str(value) for value in values}))

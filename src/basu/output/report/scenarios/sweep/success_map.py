@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.sweep.boundary import Boundary, Rule
+    from basu.output.report.scenarios.sweep.boundary import FailureBoundary, Rule
     from basu.output.report.scenarios.sweep.study import Study
 
 
@@ -43,8 +43,8 @@ ROW_PX = 104.0  # from one row of strips to the next
 BINS = 16
 
 
-def strips(found: Boundary, top_px: float) -> list[Element]:
-    """A small histogram for every parameter that varied, two in a row."""
+def strips(found: FailureBoundary, top_px: float) -> list[Element]:
+    """Return a small histogram for every parameter that varied, two in a row."""
     rules = {rule.axis.name: rule for rule in found.each if rule.is_sure}
     drawn = []
     for number_, axis in enumerate(found.study.axes):
@@ -55,7 +55,7 @@ def strips(found: Boundary, top_px: float) -> list[Element]:
 
 
 def height_px(axes: int) -> float:
-    """How high all strips are together."""
+    """Return how high all strips are together."""
     return ROW_PX * -(-axes // STRIP_COLUMNS) + 4.0
 
 
@@ -99,7 +99,7 @@ def _strip(axis: Axis, failed: NDArray[np.bool_], rule: Rule | None, left: float
 
 
 def _words_of(rule: Rule | None) -> str:
-    """The rule in words, beside the parameter's name."""
+    """Return the rule in words, beside the parameter's name."""
     if rule is None:
         return "tells nothing by itself"
     return f"{rule.condition()}: {rule.failed_inside} of {int(rule.inside.sum())} fail"
@@ -126,12 +126,12 @@ LINE_PX, LINE_CHARACTERS = 16.0, 104
 
 @functools.lru_cache
 def map_style() -> str:
-    """The style that a page with such maps needs."""
+    """Return the style that a page with such maps needs."""
     return STYLE_FILE.read_text(encoding="utf-8")
 
 
 def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | None = None) -> str:
-    """The map of one scenario and one agent as a file of its own, the first of each where none is named.
+    """Return the map of one scenario and one agent as a file of its own, the first of each where none is named.
 
     An empty text where no parameter varied.
     """
@@ -150,8 +150,8 @@ def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | 
     return tostring(picture, encoding="unicode") + "\n"
 
 
-def drawing(found: Boundary, head_px: float = 0.0) -> Element:
-    """The map, its legend and the strips as a part of a page that has ``map_style()``."""
+def drawing(found: FailureBoundary, head_px: float = 0.0) -> Element:
+    """Return the map, its legend and the strips as a part of a page that has ``map_style()``."""
     study = found.study
     plot_px = TOP_PX + HEIGHT_PX + 44.0
     whole_px = plot_px + 28.0 + height_px(len(study.axes))
@@ -168,13 +168,13 @@ def drawing(found: Boundary, head_px: float = 0.0) -> Element:
     return extended(picture, strips(found, plot_px + 34.0))
 
 
-def _title(found: Boundary) -> str:
-    """The map in a sentence, for screen readers."""
+def _title(found: FailureBoundary) -> str:
+    """Return the map in a sentence, for screen readers."""
     study = found.study
     return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
 
 
-def _axes(found: Boundary) -> tuple[Axis, Axis]:
+def _axes(found: FailureBoundary) -> tuple[Axis, Axis]:
     """What the map lies between: the pair that predicts best; where only one parameter varied, the least distance."""
     if found.pair is not None:
         return found.pair.x, found.pair.y
@@ -196,7 +196,7 @@ def _shaded(study: Study, x: Scale, y: Scale) -> list[Element]:
 
 
 def _cases(study: Study, x: Scale, y: Scale) -> list[Element]:
-    """A mark a case; cases at one place as one mark with their count."""
+    """Return a mark a case; cases at one place as one mark with their count."""
     placed = np.column_stack([x.spread(), y.spread()]).round(1)
     places, which = np.unique(placed, axis=0, return_inverse=True)
     drawn: list[Element] = []
@@ -242,7 +242,7 @@ def _together(x: float, y: float, failed: int, count: int) -> list[Element]:
 
 
 def _legend(study: Study, y: float, *, tells: bool) -> Sequence[Element]:
-    """What the marks mean."""
+    """Return the meaning of the marks."""
     drawn: list[Element] = []
     x = LEFT_PX
     words = [("pass", "passed"), ("fail", "failed")]
