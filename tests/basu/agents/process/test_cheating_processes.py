@@ -210,9 +210,9 @@ def test_other_processes_can_be_neither_limited_nor_seen(tmp_path: Path, deed: s
         other.communicate(b"\n")
 
 
-def test_output_is_bounded_in_each_run(tmp_path: Path) -> None:
+def test_output_is_bounded_in_each_run_and_steers_no_terminal(tmp_path: Path) -> None:
     path = tmp_path / "cheat.py"
-    path.write_text(AGENT.replace("DEED", "os.write(1, b'x' * 30_000_000); os.write(2, b'last words')"))
+    path.write_text(AGENT.replace("DEED", "os.write(1, b'x' * 30_000_000); os.write(2, b'\\x1b[2Jlast words')"))
     program = (
         "from basu.agents.process.remote_agent import RemoteAgent, find_agent\n"
         f"found = find_agent({str(path)!r})\n"
@@ -223,7 +223,7 @@ def test_output_is_bounded_in_each_run(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr.decode()
     assert 0 < len(done.stdout) <= 2 << 20
     assert done.stderr.count(b"the agent wrote more than 1 MB in this run") == 2
-    assert done.stderr.count(b"last words") == 2
+    assert done.stderr.count(b"?[2Jlast words") == 2
 
 
 def test_the_confinement_that_holds_is_known_and_said(tmp_path: Path) -> None:
