@@ -276,6 +276,22 @@ def test_an_agent_that_scans_for_the_simulator_finds_the_gate_alone(tmp_path: Pa
         assert confinement.PORTS not in found(tmp_path, "pass").confinement
 
 
+@NEEDS_PORTS
+def test_an_agent_cannot_take_a_closed_port_for_itself(tmp_path: Path) -> None:
+    """An agent that held every port of a range left none to the benchmark, which then blamed the set-up."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    deed = (
+        "s = socket.socket(); "
+        f"s.bind(('127.0.0.1', 0)); t = socket.socket(); t.bind(('127.0.0.1', {port})); raise ValueError('took it')"
+    )
+    with pytest.raises(AgentCrashedError, match="Permission denied"):
+        RemoteAgent(found(tmp_path, deed, closed_ports=(port,)), 10.0, 0).own_route()
+    with pytest.raises(AgentCrashedError, match="took it"):
+        RemoteAgent(found(tmp_path, deed), 10.0, 0).own_route()
+
+
 def test_ports_are_closed_for_a_simulator_that_is_not_ours() -> None:
     assert closed_ports("10.0.0.1", 2000, is_open=False) == (2000, 2001, 2002, *TRAFFIC_PORTS)
     assert closed_ports("10.0.0.1", 2000, is_open=True) == ()
