@@ -1,12 +1,12 @@
-"""Digests of all bytes that a recorded session gets from the server: equal before and after a change that changes nothing.
+"""Digests of all bytes that a session gets from the server, to compare the server before and after a change.
 
     python benchmarks/wire_bytes.py [--source src] [--ticks 200]
     python benchmarks/wire_bytes.py --against ../before/src
 
 The official client drives the session: vehicles of four kinds, walkers, props, crashes, a car on its roof, changed
-physics, rain, a friction trigger, lidar, semantic lidar, radar, camera, GNSS, IMU, collision sensor and obstacle sensor.
-Each stream is read off its socket beside the client; answers of calls are read by a client that keeps their bytes. ``--source`` names the
-folder of packages that the server runs from. With ``--against`` the session runs twice, from two folders, and the
+physics, rain, a friction trigger, and eight kinds of sensors. Each stream is read off its socket beside the client;
+answers of calls are read by a client that keeps their bytes. ``--source`` names the folder of packages that the server
+runs from. With ``--against`` the session runs twice, from two folders, and the
 command ends with 1 if a digest differs.
 """
 
@@ -40,7 +40,12 @@ SENSORS = {
     "sensor.other.collision": {},
     "sensor.other.obstacle": {},
 }
-QUESTIONS = ("get_physics_control", "get_telemetry_data", "get_actor_component_world_transform", "get_vehicle_light_states")
+QUESTIONS = (
+    "get_physics_control",
+    "get_telemetry_data",
+    "get_actor_component_world_transform",
+    "get_vehicle_light_states",
+)
 
 
 class Stream(threading.Thread):
@@ -173,9 +178,7 @@ def disturb(world: carla.World, vehicles: list[carla.Vehicle], tick: int) -> Non
         vehicles[3].set_transform(pose)
 
 
-def command(
-    client: carla.Client, vehicles: list[carla.Vehicle], walkers: list[carla.Walker], tick: int
-) -> None:
+def command(client: carla.Client, vehicles: list[carla.Vehicle], walkers: list[carla.Walker], tick: int) -> None:
     """Steer all vehicles but the one with a target of its own, and let the walkers walk."""
     steer = 0.5 * ((tick // 25) % 3 - 1)
     control = carla.VehicleControl(throttle=0.8, steer=steer, brake=1.0 if tick % 60 > 52 else 0.0)

@@ -12,10 +12,12 @@ import numpy as np
 from linden.compiled import COMPILER_IS_OFF
 from linden.maps.ground import Ground, surface_under
 from linden.physics.bodies import Bodies
+from linden.physics.columns import empty_rows
 from linden.physics.contact.impulses import part_bodies
 from linden.physics.contact.pairs import find_pairs
 from linden.physics.contact.statics import Statics
 from linden.physics.pushes import apply_forces, apply_impulses
+from linden.physics.state import VEHICLE_WORK
 from linden.physics.step import advance, heed_driver
 from linden.physics.tumble import tumble
 from linden.physics.vehicle.motion import advance_vehicle
@@ -62,7 +64,7 @@ def _type_of(value: object) -> Any:  # noqa: ANN401 - a type of numba's
 def _types() -> tuple[Any, Any, Any, Any]:
     """Return numba's types of a body, of its constants, of the scratch, and of the array of bodies."""
     bodies = Bodies()
-    columns = [_type_of(column) for column in (bodies.state, bodies.specs, bodies.work)]
+    columns = [_type_of(column) for column in (bodies.state, bodies.table.specs, empty_rows(1, VEHICLE_WORK))]
     return (*(column.dtype for column in columns), columns[0])
 
 

@@ -1,4 +1,4 @@
-"""Which bodies may touch in the coming step: a hashed grid over the plane, so the cost grows with their number."""
+"""Which bodies of a world may touch in the coming step: a hashed grid, so the cost grows with their number."""
 
 import math
 
@@ -13,6 +13,7 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 CELL_M = 12.0
+_FEW_BODIES = 12  # each is compared with all others, which is quicker than a grid
 _MOST_CELLS_ACROSS = 6  # a body wider than that is compared with all others instead of filling the grid
 _SPEED_GAIN_MPS2 = 20.0  # what a body's speed may grow by while the pairs hold
 _SKIN_M = 0.2  # what pushing apart may move it by
@@ -58,6 +59,15 @@ def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
             circles[i, 0], circles[i, 1] = box_centre(rows[i])
             circles[i, 2] = reach_of(rows[i], dt_s)
             entries += 1
+    if entries <= _FEW_BODIES:
+        none = np.empty(0, np.int32)
+        return _collect(rows, circles, none, np.empty((0, 2), np.int32), none, statics)
+    return _pairs_by_grid(rows, circles, entries, statics)
+
+
+@part
+def _pairs_by_grid(rows: Rows, circles: F64, entries: int, statics: Statics) -> I32:
+    """Enter ``entries`` circles (count, 3) into a grid, negative radii being none, and return the pairs."""
     size = 64
     while size < 4 * entries:
         size *= 2
@@ -65,7 +75,7 @@ def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
     nodes: I32 = np.empty((64 + 4 * entries, 2), np.int32)  # body, next node
     wide = np.empty(entries, np.int32)
     wide_count, used = 0, 0
-    for i in range(count - 1, -1, -1):
+    for i in range(len(circles) - 1, -1, -1):
         if circles[i, 2] < 0.0:
             continue
         x0, x1, y0, y1 = _cells(circles[i])
@@ -111,7 +121,7 @@ def _near_bodies(rows: Rows, i: int, circles: F64, head: I32, nodes: I32, wide: 
     """Return the bodies after ``i`` with a circle that meets its own, ascending, in ``near`` (grown where needed)."""
     found = 0
     x0, x1, y0, y1 = _cells(circles[i])
-    if x1 - x0 >= _MOST_CELLS_ACROSS or y1 - y0 >= _MOST_CELLS_ACROSS:
+    if len(head) == 0 or x1 - x0 >= _MOST_CELLS_ACROSS or y1 - y0 >= _MOST_CELLS_ACROSS:
         for j in range(i + 1, len(circles)):
             if _may_meet(rows, i, j, circles):
                 near, found = _insert(near, found, j)
