@@ -251,7 +251,7 @@ class Worlds:
     def poses(self) -> F64:
         """(W, S, 6) x, y, z in m, pitch, yaw, roll in degrees."""
         state = self.state
-        poses = np.empty((*state.shape, 6))
+        poses: F64 = np.empty((*state.shape, 6))
         poses[..., :3], poses[..., 3:] = state["position"], np.degrees(state["rotation"])
         return poses
 
