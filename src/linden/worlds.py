@@ -5,19 +5,20 @@ the actors and the controls of the server's world equals that, byte for byte.
 """
 
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from linden.blueprints.library import Blueprint, Kind, packaged
 from linden.errors import UserError
+from linden.maps.ground import Ground
 from linden.maps.library import HOME_MAP, MapLibrary
 from linden.physics.bodies import FARTHEST_M, Bodies, place_rows
 from linden.physics.columns import BodyTable
-from linden.physics.contact.statics import scenery_type
-from linden.physics.state import VEHICLE, WALKER
-from linden.physics.step import Contacts, advance_worlds
+from linden.physics.contact.statics import Statics, scenery_type
+from linden.physics.state import BODY, VEHICLE, WALKER
+from linden.physics.step import CONTACT, Contacts, advance_worlds, contacts_of
 from linden.physics.vehicle.controls import set_controls
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.episode import EpisodeSettings
@@ -30,6 +31,9 @@ from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
 from linden.world import clock_s, substeps_of
+
+if TYPE_CHECKING:
+    from linden.worlds_gpu import DeviceColumn, GpuWorlds
 
 F64 = NDArray[np.float64]
 Chosen: TypeAlias = Sequence[int] | NDArray[np.integer[Any]] | None
@@ -50,10 +54,6 @@ class Worlds:
         map: the map; never changes.
         count: how many worlds there are.
         dt_s: simulated time of a step.
-        contacts: what touched in the last step, of ``linden.physics.step.CONTACT``, ordered by world.
-        valid: (W,) False from the step on in which a body of a world got lost in space, until the world is reset; such
-            a world stands still.
-        frames: (W,) steps since each world was reset.
     """
 
     def __init__(
@@ -74,8 +74,8 @@ class Worlds:
         """
         self.count = _whole("count", count, 1, _MOST_WORLDS)
         self._threads = _whole("threads", threads, 0, 4096)
-        if device != "cpu":
-            raise UserError(f"Worlds cannot run on device {device!r}; use device='cpu'")
+        if device not in {"cpu", "cuda"}:
+            raise UserError(f"Worlds cannot run on device {device!r}; use device='cpu' or device='cuda'")
         if not (isinstance(dt_s, (int, float)) and 0.0 < dt_s <= 1.0):
             raise UserError(f"dt_s is the time of a step in seconds, above 0 and at most 1, not {dt_s!r}")
         self.dt_s = float(dt_s)
@@ -85,11 +85,11 @@ class Worlds:
         self._traffic = Traffic(self._scenery.signals)
         self._colours = [self._traffic.state.colour]
         self._table, self._first = BodyTable(self.count, slots=1), BodyTable(self.count, slots=1)
-        self.contacts: Contacts = advance_worlds(
-            self._table, np.zeros(0, np.int32), self.map.ground, self._scenery.statics, 1.0
-        )
-        self.valid = np.ones(self.count, np.bool_)
-        self.frames = np.zeros(self.count, np.int64)
+        self._contacts: Contacts | None = np.zeros(0, CONTACT)
+        self._valid = np.ones(self.count, np.bool_)
+        self._frames = np.zeros(self.count, np.int64)
+        self._gpu = _gpu(self.map.ground, self._scenery.statics) if device == "cuda" else None
+        self._host_is_current = True
         self._all = np.arange(self.count, dtype=np.int32)
 
     # -- actors --------------------------------------------------------------------------------------------------------
@@ -108,6 +108,7 @@ class Worlds:
         if blueprint.kind not in _KINDS:
             raise UserError(f"{blueprint_id} has no body; spawn vehicles, walkers and props into Worlds")
         chosen = self._chosen(worlds)
+        self._edit()
         poses, pose_of_world = np.unique(self._poses(at, len(chosen)), axis=0, return_inverse=True)
         pose_of_world = pose_of_world.reshape(-1)
         self._refuse_deep(poses)
@@ -142,6 +143,7 @@ class Worlds:
         chosen = self._chosen(worlds)
         rows = self._rows(slot, chosen)
         wanted = self._poses(poses, len(chosen))
+        self._edit()
         self._refuse_deep(np.unique(wanted, axis=0))
         place_rows(self._table.state.reshape(-1), rows, wanted)
 
@@ -154,12 +156,15 @@ class Worlds:
         chosen = self._chosen(worlds)
         self._rows(slot, chosen)
         wanted = _numbers("velocity_mps", velocity_mps, (len(chosen), 3))
+        self._edit()
         for world, velocity in zip(chosen.tolist(), wanted.tolist(), strict=True):
             self.bodies(world).set_target_velocity(slot, velocity)
 
     def bodies(self, world: int) -> Bodies:
         """Return the bodies of one world as the server has them: a view, by which everything can be read and set."""
-        return Bodies(self._table, _whole("world", world, 0, self.count - 1))
+        number = _whole("world", world, 0, self.count - 1)
+        self._edit()
+        return Bodies(self._table, number)
 
     # -- controls ------------------------------------------------------------------------------------------------------
 
@@ -178,7 +183,11 @@ class Worlds:
         width = 7 if given.ndim and given.shape[-1] == 7 else 3
         whole = np.zeros((len(chosen), 7))
         whole[:, :width] = _numbers("controls", given, (len(chosen), width))
-        set_controls(self._table.state.reshape(-1), rows, whole)
+        if self._gpu is not None and self._gpu.is_current:
+            self._gpu.set_controls(rows, whole)
+            self._host_is_current = False
+        else:
+            set_controls(self._table.state.reshape(-1), rows, whole)
 
     def set_walks(self, directions: ArrayLike, speeds_mps: ArrayLike, slot: int = 0, worlds: Chosen = None) -> None:
         """Let the walkers in a slot of ``worlds`` (K,) go on in ``directions`` (3,) or (K, 3) at speeds () or (K,).
@@ -190,6 +199,7 @@ class Worlds:
         rows = self._rows(slot, chosen, WALKER)
         ways = _numbers("directions", directions, (len(chosen), 3))
         speeds = _numbers("speeds_mps", speeds_mps, (len(chosen),))
+        self._edit()
         state = self._table.state.reshape(-1)
         state["walker_direction"][rows] = np.clip(ways, -1e3, 1e3)
         state["walker_speed"][rows] = np.clip(speeds, 0.0, 50.0)
@@ -198,7 +208,10 @@ class Worlds:
 
     def step(self) -> None:
         """Advance all valid worlds by ``dt_s``."""
-        running = self._all if self.valid.all() else np.flatnonzero(self.valid).astype(np.int32)
+        if self._gpu is not None:
+            self._step_on_gpu(self._gpu)
+            return
+        running = self._all if self._valid.all() else np.flatnonzero(self._valid).astype(np.int32)
         ground, statics = self.map.ground, self._scenery.statics
         touched: dict[int, Contacts] = {}
 
@@ -208,11 +221,36 @@ class Worlds:
 
         in_stretches(len(running), work, multiple=1, fewest=FEWEST_WORLDS, threads=self._threads)
         met = [touched[start] for start in sorted(touched) if len(touched[start])]
-        self.contacts = np.concatenate(met) if met else self.contacts[:0]
-        self.frames[running] += 1
+        self._contacts = np.concatenate(met) if met else np.zeros(0, CONTACT)
+        self._frames[running] += 1
         position_m = self._table.state["position"]
         inside = np.abs(position_m) < FARTHEST_M  # false of nan as well
-        self.valid[running] = inside.all(axis=(1, 2))[running]
+        self._valid[running] = inside.all(axis=(1, 2))[running]
+
+    def _step_on_gpu(self, gpu: "GpuWorlds") -> None:
+        if not gpu.is_current:
+            gpu.upload(self._table, self._first, self._valid, self._frames)
+        gpu.step(self.dt_s, self._substeps)
+        self._host_is_current, self._contacts = False, None
+
+    def _read(self) -> None:
+        """Bring the arrays of the host up to date with the device."""
+        if self._gpu is not None and not self._host_is_current:
+            self._gpu.download(self._table, self._valid, self._frames)
+            self._host_is_current = True
+
+    def _edit(self) -> None:
+        """Bring the arrays of the host up to date before they change; the device gets them before its next step."""
+        self._read()
+        if self._gpu is not None:
+            self._keep_contacts()
+            self._gpu.is_current = False
+
+    def _keep_contacts(self) -> Contacts:
+        if self._contacts is None:
+            assert self._gpu is not None
+            self._contacts = contacts_of(self._gpu.touched(), self._scenery.statics)
+        return self._contacts
 
     def reset(self, worlds: Chosen = None) -> None:
         """Set ``worlds`` back to the state at their last spawn.
@@ -221,6 +259,12 @@ class Worlds:
             UserError: there is no such world.
         """
         chosen = self._chosen(worlds)
+        if self._gpu is not None and self._gpu.is_current:
+            self._keep_contacts()
+            self._gpu.reset(chosen)
+            self._host_is_current = False
+            self._forget_contacts(chosen)
+            return
         self._table.state[chosen] = self._first.state[chosen]
         self._table.spec_of[chosen] = self._first.spec_of[chosen]
         self._begin(chosen)
@@ -232,6 +276,7 @@ class Worlds:
             UserError: there is no such world.
         """
         chosen = self._chosen(worlds)
+        self._edit()
         self._table.state[chosen] = np.zeros((), self._table.state.dtype)
         self._table.spec_of[chosen] = 0
         self._table.counts[chosen] = 0
@@ -241,8 +286,55 @@ class Worlds:
     # -- what there is -------------------------------------------------------------------------------------------------
 
     @property
+    def statics(self) -> Statics:
+        """Boxes of the scenery that bodies can hit; never changes."""
+        return self._scenery.statics
+
+    @property
+    def contacts(self) -> Contacts:
+        """What touched in the last step, of ``linden.physics.step.CONTACT``, ordered by world; read only."""
+        return self._keep_contacts()
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """(W,) False from the step on in which a body of a world got lost in space, until the world is reset.
+
+        Such a world stands still. On a GPU so does a world with more near pairs than there is room for.
+        """
+        self._read()
+        return self._valid
+
+    @property
+    def frames(self) -> NDArray[np.int64]:
+        """(W,) steps since each world was reset."""
+        self._read()
+        return self._frames
+
+    def on_device(self, name: str) -> "DeviceColumn":
+        """Return a column of ``state`` (W, S, ...) where it lies on the GPU, as ``torch.as_tensor`` and CuPy take it.
+
+        The next call that changes actors or places makes it stale.
+
+        Raises:
+            UserError: the worlds are not on a GPU, or there is no such column.
+        """
+        if self._gpu is None:
+            raise UserError("these worlds are in the memory of the processor; read `state`, or use device='cuda'")
+        if name not in (BODY.names or ()):
+            raise UserError(f"bodies have no column {name!r}; they have {', '.join(BODY.names or ())}")
+        if not self._gpu.is_current:
+            self._gpu.upload(self._table, self._first, self._valid, self._frames)
+        return self._gpu.column(name)
+
+    def wait(self) -> None:
+        """Wait until the GPU has done all steps; without one there is nothing to wait for."""
+        if self._gpu is not None:
+            self._gpu.wait()
+
+    @property
     def state(self) -> StructuredArray:
         """(W, S) of ``linden.physics.state.BODY``: all bodies, to be read only; ``["alive"]`` tells which rows are."""
+        self._read()
         state = self._table.state[:, : int(self._table.counts.max())]
         state.flags.writeable = False
         return state
@@ -258,7 +350,8 @@ class Worlds:
     @property
     def elapsed_s(self) -> F64:
         """(W,) simulated time since each world was reset."""
-        return self.frames * clock_s(self.dt_s)
+        elapsed_s: F64 = self.frames * clock_s(self.dt_s)
+        return elapsed_s
 
     @property
     def light_colours(self) -> NDArray[np.uint8]:
@@ -275,7 +368,7 @@ class Worlds:
         """Bytes of all bodies, first states and specifications; the map's are not counted."""
         tables = (self._table, self._first)
         arrays = [array for table in tables for array in (table.state, table.spec_of, table.counts, table.specs)]
-        return sum(array.nbytes for array in (*arrays, self.valid, self.frames, self._all))
+        return sum(array.nbytes for array in (*arrays, self._valid, self._frames, self._all))
 
     # -- checks --------------------------------------------------------------------------------------------------------
 
@@ -284,8 +377,12 @@ class Worlds:
         self._first.spec_of[chosen] = self._table.spec_of[chosen]
 
     def _begin(self, chosen: NDArray[np.int32]) -> None:
-        self.valid[chosen], self.frames[chosen] = True, 0
-        self.contacts = self.contacts[~np.isin(self.contacts["world"], chosen)]
+        self._valid[chosen], self._frames[chosen] = True, 0
+        self._forget_contacts(chosen)
+
+    def _forget_contacts(self, chosen: NDArray[np.int32]) -> None:
+        contacts = self._keep_contacts()
+        self._contacts = contacts[~np.isin(contacts["world"], chosen)]
 
     def _chosen(self, worlds: Chosen) -> NDArray[np.int32]:
         """Return the numbers of worlds (K,).
@@ -375,6 +472,19 @@ class Worlds:
     def _refuse_room(self, blueprint: Blueprint, pose: Transform, world: int, other: str) -> None:
         at = ", ".join(f"{value:.2f}" for value in pose.location)
         raise UserError(f"{blueprint.definition.id} has no room at ({at}) in world {world}: {other} stands there")
+
+
+def _gpu(ground: Ground, statics: Statics) -> "GpuWorlds":
+    """Return worlds on a GPU.
+
+    Raises:
+        UserError: numba-cuda is missing, or there is no device.
+    """
+    try:
+        from linden.worlds_gpu import GpuWorlds  # noqa: PLC0415 - numba-cuda is of the extra gpu
+    except ImportError as error:
+        raise UserError(f"device='cuda' needs the extra gpu: pip install 'linden[gpu]' ({error})") from error
+    return GpuWorlds(ground, statics)
 
 
 def _whole(name: str, value: object, least: int, most: int) -> int:

@@ -1,6 +1,6 @@
 """One frame of physics of many worlds: pushes, vehicles, walkers, props, contacts, in as many substeps as asked."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from linden.compiled import kept_part, part, unlocked
 from linden.maps.ground import Ground
 from linden.physics.columns import BodyTable, empty_rows
-from linden.physics.contact.impulses import JX, PX, TOUCHED, part_bodies
+from linden.physics.contact.impulses import ACCOUNT, JX, PX, TOUCHED, part_bodies
 from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics
 from linden.physics.prop import advance_prop
@@ -70,7 +70,7 @@ def _advance_bodies(
                 v.velocity[axis] = 0.0
                 v.angular_velocity[axis] = 0.0
             continue
-        apply_forces(v, dt_s)
+        apply_forces(v, work, dt_s)
         if v.kind == VEHICLE and not v.tumbling and is_upset(v, specs[spec_of[i]]):
             start_tumbling(v)
         if v.kind == VEHICLE and not v.tumbling:
@@ -80,7 +80,7 @@ def _advance_bodies(
         if v.constant_velocity_on:
             hold_velocity(v)
         if v.tumbling:
-            tumble(v, specs[spec_of[i]], ground, gravity_mps2, dt_s)
+            tumble(v, specs[spec_of[i]], work, ground, gravity_mps2, dt_s)
             continue
         if v.kind == WALKER:
             advance_walker(v, ground, gravity_mps2, dt_s)
@@ -111,6 +111,47 @@ def _write_acceleration(v: Body, dt_s: float) -> None:
     """Write the acceleration since :func:`_keep_velocity`."""
     for axis in range(3):
         v.acceleration[axis] = (v.velocity[axis] - v.acceleration[axis]) / dt_s
+
+
+@part
+def begin_frame(rows: Rows, spec_of: I32, specs: Rows, work: Work, count: int, dt_s: float) -> None:
+    """Apply impulses and let the drivers act, before the pairs of a world are sought."""
+    for i in range(count):
+        v = rows[i]
+        _keep_velocity(v)
+        if v.alive and not is_fixed(v):
+            apply_impulses(v, work)
+        if v.kind == VEHICLE:
+            heed_driver(v, specs[spec_of[i]], dt_s)
+
+
+@part
+def run_frame(
+    rows: Rows,
+    spec_of: I32,
+    specs: Rows,
+    work: Work,
+    count: int,
+    pairs: I32,
+    account: F64,
+    ground: Ground,
+    statics: Statics,
+    dt_s: float,
+    substeps: int,
+    gravity_mps2: float,
+) -> None:
+    """Advance the bodies of a world by all substeps; ``account`` (P, ACCOUNT) is zero and gets what touched."""
+    for n in range(substeps):
+        left = substeps - 1 - n
+        _advance_bodies(rows, spec_of, specs, work, count, ground, gravity_mps2, dt_s / substeps, left)
+        if len(pairs) > 0:
+            part_bodies(rows, pairs, statics, work, account)
+    for i in range(count):
+        v = rows[i]
+        _write_acceleration(v, dt_s)
+        clear_pushes(v)
+        if v.tumbling or v.rollover_stage > 0:
+            watch_rollover(v, dt_s)
 
 
 @part
@@ -152,26 +193,10 @@ def _build(sources: int) -> _Advance:
         found = 0
         for world in worlds:
             rows, which, count = state[world], spec_of[world], counts[world]
-            for i in range(count):
-                v = rows[i]
-                _keep_velocity(v)
-                if v.alive and not is_fixed(v):
-                    apply_impulses(v)
-                if v.kind == VEHICLE:
-                    heed_driver(v, specs[which[i]], dt_s)
+            begin_frame(rows, which, specs, work[0], count, dt_s)
             pairs = find_pairs(rows, count, statics, dt_s)
-            account = np.zeros((len(pairs), 7))
-            for n in range(substeps):
-                left = substeps - 1 - n
-                _advance_bodies(rows, which, specs, work[0], count, ground, gravity_mps2, dt_s / substeps, left)
-                if len(pairs) > 0:
-                    part_bodies(rows, pairs, statics, account)
-            for i in range(count):
-                v = rows[i]
-                _write_acceleration(v, dt_s)
-                clear_pushes(v)
-                if v.tumbling or v.rollover_stage > 0:
-                    watch_rollover(v, dt_s)
+            account = np.zeros((len(pairs), ACCOUNT))
+            run_frame(rows, which, specs, work[0], count, pairs, account, ground, statics, dt_s, substeps, gravity_mps2)
             touched, found = _report(world, pairs, account, touched, found)
         return touched[:found]
 
@@ -214,6 +239,15 @@ def advance_worlds(
     columns = table.state, table.spec_of, table.specs, empty_rows(1, VEHICLE_WORK), table.counts, worlds
     rows = _advance(*columns, ground, statics, float(dt_s), int(substeps), float(gravity_mps2))
     return _contacts(rows, statics) if len(rows) else _NO_CONTACTS
+
+
+def contacts_of(accounts: Iterable[tuple[int, I32, F64]], statics: Statics) -> Contacts:
+    """Return the contacts of worlds by their numbers, pairs (P, 2) and accounts (P, ACCOUNT)."""
+    touched: F64 = np.empty((0, 9))
+    found = 0
+    for world, pairs, account in accounts:
+        touched, found = _report(world, pairs, account, touched, found)
+    return _contacts(touched[:found], statics)
 
 
 def step(
