@@ -350,7 +350,7 @@ class Worlds:
     @property
     def elapsed_s(self) -> F64:
         """(W,) simulated time since each world was reset."""
-        elapsed_s: F64 = self.frames * clock_s(self.dt_s)
+        elapsed_s: F64 = np.multiply(self.frames, clock_s(self.dt_s), dtype=np.float64)
         return elapsed_s
 
     @property
@@ -452,22 +452,19 @@ class Worlds:
     ) -> None:
         """Raise UserError where a body or the scenery stands at a pose, as the server refuses to spawn there."""
         statics = self._scenery.statics
-        views = {int(world): self.bodies(int(world)) for world in chosen if self._table.counts[world]}
         for number, pose in enumerate(poses):
-            mine = chosen[pose_of_world == number].tolist()
+            mine = chosen[pose_of_world == number]
             near = statics.near(pose.location.x, pose.location.y, REACH_M)
             met = touching(blueprint.box, pose, statics.centre, statics.half, statics.yaw_rad, near)
             if len(met):
-                self._refuse_room(blueprint, pose, mine[0], scenery_type(int(statics.tag[met[0]])))
-            for world in mine:
-                bodies = views.get(world)
-                if bodies is None:
-                    continue
-                solid = np.flatnonzero(bodies.alive & bodies.collides)
-                yaw_rad = bodies.rotation[:, 1]
-                met = touching(blueprint.box, pose, world_centres(bodies), bodies.half_extent, yaw_rad, solid)
-                if len(met):
-                    self._refuse_room(blueprint, pose, world, f"the body in slot {met[0]}")
+                self._refuse_room(blueprint, pose, int(mine[0]), scenery_type(int(statics.tag[met[0]])))
+            state = self._table.state[mine].reshape(-1)
+            solid = np.flatnonzero(state["alive"] & state["collides"])
+            yaw_rad = state["rotation"][:, 1]
+            met = touching(blueprint.box, pose, world_centres(state), state["half_extent"], yaw_rad, solid)
+            if len(met):
+                world, slot = divmod(int(met[0]), self._table.state.shape[1])
+                self._refuse_room(blueprint, pose, int(mine[world]), f"the body in slot {slot}")
 
     def _refuse_room(self, blueprint: Blueprint, pose: Transform, world: int, other: str) -> None:
         at = ", ".join(f"{value:.2f}" for value in pose.location)

@@ -141,7 +141,7 @@ def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str 
     """Return the name of what stands where a box would be: a body first, then the scenery."""
     bodies, statics = episode.bodies, episode.statics
     solid = np.flatnonzero(bodies.alive & bodies.collides)
-    found = touching(box, pose, world_centres(bodies), bodies.half_extent, bodies.rotation[:, 1], solid)
+    found = touching(box, pose, world_centres(bodies.state), bodies.half_extent, bodies.rotation[:, 1], solid)
     if found.size:
         record = episode.actors.of_slot(int(found[0]))
         return f"{record.description.id} (actor {record.id})"

@@ -175,7 +175,7 @@ def _may_meet(rows: Rows, i: int, j: int, circles: F64) -> bool:
 
 @part
 def _add_statics(rows: Rows, i: int, circles: F64, statics: Statics, pairs: I32, found: int) -> int:
-    """Add the pairs of a movable body with statics whose circles meet its own, in the order of their numbers."""
+    """Add the pairs of a movable body with statics with circles that meet its own, in the order of their numbers."""
     frame, circle, first = statics.bin_frame, circles[i], found
     if len(statics.bin_items) == 0 or is_fixed(rows[i]):
         return found
