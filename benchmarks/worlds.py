@@ -3,10 +3,10 @@
     python benchmarks/worlds.py [--worlds 1 10 100 1000] [--vehicles 1 10] [--device cpu] [--alone]
 
 A vehicle-step is one vehicle for one frame of 0.05 s, of 5 substeps, contacts included. Every vehicle has random pedals
-and a random steer, new ones every 20 steps; crashes are part of it, and every world is reset after 10 s. The limit beside it is the physics alone of a world
-in which all vehicles stand in one world, on one core times the cores. With ``--alone`` the server is left out, which
-needs the official client. With ``--device cuda`` the same worlds run on both devices, and the last column is the
-greatest distance between the two after 1 s, over the vehicles, and its median.
+and a random steer, new ones every 20 steps. Crashes are part of it, and every world is reset after 10 s. The limit is
+the physics alone of 100 vehicles in one world, on one core times the cores. With ``--alone`` the server is left out,
+which needs the official client. With ``--device cuda`` the same worlds run on both devices, and the last columns are
+the greatest and the median distance between the two after 1 s.
 """
 
 import argparse
