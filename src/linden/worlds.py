@@ -375,6 +375,7 @@ class Worlds:
     def _keep_as_first(self, chosen: NDArray[np.int32]) -> None:
         self._first.state[chosen] = self._table.state[chosen]
         self._first.spec_of[chosen] = self._table.spec_of[chosen]
+        self._table.kept = [self._first.spec_of]
 
     def _begin(self, chosen: NDArray[np.int32]) -> None:
         self._valid[chosen], self._frames[chosen] = True, 0

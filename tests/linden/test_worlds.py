@@ -148,6 +148,18 @@ def test_each_world_has_a_place_of_its_own_and_specifications_are_shared(maps: M
     assert worlds.bodies(49).spec(1)["wheelbase_m"] == pytest.approx(2.8)
 
 
+def test_a_reset_brings_back_the_physics_of_the_spawn(maps: MapLibrary) -> None:
+    worlds = Worlds(maps=maps)
+    worlds.spawn(CAR, 30)
+    bodies = worlds.bodies(0)
+    drag = float(bodies.spec(0)["drag_kgpm"])
+    for step in range(20):
+        bodies.set_physics_control(0, bodies.physics_control(0)._replace(drag_coefficient=1.0 + step))
+    worlds.reset()
+    assert bodies.spec(0)["drag_kgpm"] == drag
+    assert bodies.design(0).control.drag_coefficient == pytest.approx(0.23)
+
+
 def test_some_worlds_get_actors_that_others_lack(maps: MapLibrary) -> None:
     worlds = Worlds(count=4, maps=maps)
     worlds.spawn(CAR, 30)

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.state import BODY, VEHICLE, VEHICLE_SPEC, Rows
+from linden.physics.state import BODY, VEHICLE_SPEC, Rows
 from linden.protocol.values.control import Undercarriage, VehiclePhysicsControl
 from linden.protocol.values.space import Vector3D
 
@@ -68,6 +68,7 @@ class BodyTable:
         counts: (W,) slots below this have been given out in a world; kernels look no further.
         spec_of: (W, S) row of each vehicle in ``specs``; 0 for other bodies.
         specs: of VEHICLE_SPEC, one row for each design in use; row 0 is empty.
+        kept: arrays of other rows of ``specs`` that are in use.
     """
 
     def __init__(self, worlds: int = 1, slots: int = 4) -> None:
@@ -76,6 +77,7 @@ class BodyTable:
         self.spec_of = np.zeros((worlds, slots), np.int32)
         self.specs = empty_rows(4, VEHICLE_SPEC)
         self._designs: list[VehicleDesign | None] = [None]
+        self.kept: list[NDArray[np.int32]] = []
         self._row_of: dict[VehicleDesign, int] = {}
         self._views: WeakSet[Columns] = WeakSet()
 
@@ -115,7 +117,7 @@ class BodyTable:
     def _free_row(self, design: VehicleDesign) -> int:
         """Return a row for a new design: behind the others, or in a full table that of a design without vehicles."""
         if len(self._designs) == len(self.specs):
-            in_use = set(self.spec_of[self.state["kind"] == VEHICLE].tolist())
+            in_use = {row for rows in (self.spec_of, *self.kept) for row in np.unique(rows).tolist()}
             for row, known in enumerate(self._designs):
                 if known is not None and row not in in_use:
                     del self._row_of[known]
