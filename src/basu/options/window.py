@@ -26,6 +26,14 @@ class WindowOptions(Settings):
         bool,
         Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
     ] = False
+    watch: Annotated[
+        bool,
+        Option(
+            help="show the drive in a page of the browser and print its address; P takes over control",
+            group=WINDOW,
+            repeats=False,
+        ),
+    ] = False
     hud: Annotated[
         Literal["camera", "map"] | None,
         Option(
@@ -64,8 +72,10 @@ class WindowOptions(Settings):
         """Check the options of the window.
 
         Raises:
-            UserError: a picture of no window, or a size beyond the limits.
+            UserError: two windows, a picture of no window, or a size beyond the limits.
         """
+        if self.watch and self.hud is not None:
+            raise UserError("--watch and --hud are two windows of one drive; choose one")
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
         _check_size("--hud-size", self.hud_size, WINDOWS)

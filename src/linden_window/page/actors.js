@@ -120,7 +120,7 @@ export class Actors {
       else group.push(pose);
     }
     for (const model of this.models.values()) {
-      if (model !== null && !groups.has(model)) for (const mesh of model.meshes) mesh.count = 0;
+      if (model !== null && !groups.has(model)) for (const mesh of model.meshes) mesh.visible = false;
     }
     for (const [model, group] of groups) this.draw(model, group, t);
   }
@@ -150,6 +150,7 @@ export class Actors {
     });
     for (const mesh of model.meshes) {
       mesh.count = poses.length;
+      mesh.visible = true;
       mesh.instanceMatrix.needsUpdate = true;
       if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
     }

@@ -35,6 +35,10 @@ class Page {
     this.map = new Map2d(/** @type {HTMLCanvasElement} */ (element("map")));
     this.renderer = rendererOf(canvas);
     this.isFlat = this.renderer === null || parameters.has("flat") || innerWidth <= NARROW_PX;
+    if (this.renderer !== null && !this.renderer.shadowMap.enabled) {
+      this.world.saveWork();
+      this.cameras.camera.far = 900;
+    }
     if (this.renderer === null) say(NO_WEBGL, true, Infinity);
     this.replay = new Replay(this.timeline);
     this.spectator = 0;
@@ -286,6 +290,7 @@ class Page {
     const clock = this.replay.isOn ? this.replay.advance(dt) : now / 1000 - 1.6 * this.timeline.interval;
     const t = this.timeline.time(clock);
     this.poses = this.timeline.poses(clock);
+    if (!this.chosen && ["chase", "driver"].includes(this.cameras.view)) this.next(1);
     const pose = this.followed();
     this.place(pose);
     if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks);
@@ -378,16 +383,23 @@ class Page {
 /** Return a renderer, null if the browser has no WebGL. @param {HTMLCanvasElement} canvas */
 function rendererOf(canvas) {
   try {
-    const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-    renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
-    const context = renderer.getContext();
-    const about = context.getExtension("WEBGL_debug_renderer_info");
-    const name = about ? String(context.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
-    renderer.shadowMap.enabled = !/swiftshader|llvmpipe|software/i.test(name);
+    const isSoft = drawsByProcessor();
+    const renderer = new WebGLRenderer({ canvas, antialias: !isSoft, powerPreference: "high-performance" });
+    renderer.setPixelRatio(isSoft ? 1 : Math.min(devicePixelRatio || 1, 2));
+    renderer.shadowMap.enabled = !isSoft;
     return renderer;
   } catch {
     return null;
   }
+}
+
+/** Return whether WebGL is computed by the processor, which is slow. */
+function drawsByProcessor() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const about = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = about ? String(context?.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
 }
 
 /** @param {import("three").Camera} camera */
