@@ -97,7 +97,7 @@ def _send(link: PageLink, folders: list[Path], histories: list[History], text: s
     link.note({"type": "map", "name": first.facts.route.town, "text": text})
     actors, marks, notices = list[dict[str, Any]](), list[dict[str, Any]](), list[str]()
     for number, (folder, history) in enumerate(zip(folders, histories, strict=True)):
-        actors += actors_note(history.facts, folder.resolve().name, number)
+        actors += actors_note(history.facts, f"run {number + 1}" if len(folders) > 1 else "", number)
         scoring = resolve(Scoring, [scoring_of_run(folder / CONFIG_FILE)])
         marks += [mark_of(each, number) for each in infractions(history, scoring)]
         notice = lacks(folder)

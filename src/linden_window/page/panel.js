@@ -113,6 +113,7 @@ export function aboutActor(actor, pose) {
 export function showScore(panel) {
   const section = element("score");
   section.hidden = false;
+  document.body.classList.add("scored");
   const title = document.createElement("h1");
   title.textContent = panel.title;
   const lines = document.createElement("div");
