@@ -67,7 +67,7 @@ def test_facts_are_sent_when_they_change_and_not_before(world: World, recorder) 
     assert [note["weather"]["precipitation"] for note in recorder.of("weather")] == [0.0, 50.0]
 
 
-def test_an_actor_that_comes_or_goes_is_told(world: World, recorder) -> None:
+def test_the_page_learns_of_an_actor_that_comes_or_goes(world: World, recorder) -> None:
     observer = WorldObserver(world, recorder)
     observer.has_pages(1)
     car = world.spawn(CAR, world.spawn_points[0])
