@@ -91,6 +91,7 @@ class WorldObserver:
         self._rows = np.array([actors.row(record.id) for record in self._records], np.intp)
         vehicles = [i for i, r in enumerate(self._records) if r.kind is Kind.VEHICLE and r.slot != NO_BODY]
         self._vehicles = np.array(vehicles, np.intp)
+        self._rows_of_vehicles = self._rows[self._vehicles]
         self._lit = [self._records[index] for index in vehicles]
         self._slots = np.array([record.slot for record in self._lit], np.intp)
         self._walkers = [(i, r.id) for i, r in enumerate(self._records) if r.kind is Kind.WALKER]
@@ -109,19 +110,21 @@ class WorldObserver:
         pose = actors.pose[rows]
         out["place"] = pose[:, :3]
         out["rotation"] = poses.turns(pose[:, 3:])
-        state = actors.rows.view(VEHICLE_ROW)[rows[self._vehicles]]
         velocity = actors.rows["velocity"][rows]
-        out["speed"] = np.minimum(np.sqrt((velocity * velocity).sum(axis=1)), _SHORT_MPS) * 100.0
+        out["speed"] = np.minimum(np.sqrt(np.einsum("ij,ij->i", velocity, velocity)), _SHORT_MPS) * 100.0
         if len(self._vehicles):
-            at = self._vehicles
+            at, state, of = self._vehicles, actors.rows.view(VEHICLE_ROW), self._rows_of_vehicles
             out["lights"][at] = [record.light_state & 0xFFFF for record in self._lit]
-            out["steer"][at] = (episode.bodies.wheel_steer[self._slots, 0] * 100.0).clip(-127, 127)
-            out["throttle"][at] = state["throttle"] * 255.0
-            out["brake"][at] = state["brake"] * 255.0
-            out["limit"][at] = np.nan_to_num(state["speed_limit"]).clip(0, 255)
-            out["state"][at] = state["reverse"] * np.uint8(poses.REVERSES)
-        for index, actor_id in self._walkers:
-            out["state"][index] = poses.DEAD if episode.walkers.is_dead(actor_id) else 0
+            steer = episode.bodies.wheel_steer[self._slots, 0] * 100.0
+            out["steer"][at] = np.maximum(np.minimum(steer, 127.0), -127.0)
+            out["throttle"][at] = state["throttle"][of] * 255.0
+            out["brake"][at] = state["brake"][of] * 255.0
+            limit = state["speed_limit"][of]
+            out["limit"][at] = np.where(limit > 0.0, np.minimum(limit, 255.0), 0.0)  # nan is no limit
+            out["state"][at] = state["reverse"][of] * np.uint8(poses.REVERSES)
+        dead = [index for index, actor_id in self._walkers if episode.walkers.is_dead(actor_id)]
+        if dead:
+            out["state"][dead] = poses.DEAD
         return out
 
     # -- world.debug ----------------------------------------------------------------------------------------------

@@ -33,13 +33,14 @@ POSE = np.dtype(
 assert POSE.itemsize == 32
 DEAD, REVERSES, BY_HAND = 1, 2, 4
 """Bits of ``state``: a dead walker, the reverse gear, a person at the wheel."""
-_HALF_TURN = 32767.0 / 180.0
+_MOST = 32767.0
 
 
 def turns(degrees: NDArray[np.floating[Any]]) -> NDArray[np.int16]:
     """Return angles as the page reads them; any number of turns is the same angle."""
-    wrapped = degrees - 360.0 * np.ceil((degrees - 180.0) / 360.0)
-    packed: NDArray[np.int16] = np.rint(wrapped * _HALF_TURN).astype(np.int16)
+    shares = degrees * (1.0 / 360.0)
+    shares -= np.rint(shares)
+    packed: NDArray[np.int16] = np.rint(shares * (2.0 * _MOST)).astype(np.int16)
     return packed
 
 

@@ -45,6 +45,7 @@ def started(*words: str | Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 
 def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: Path) -> None:
     folder = written(tmp_path / "a-run", record(crashing()))
+    (folder / "config.json").unlink()  # its fake has no scoring, and the default is meant
     (tmp_path / "street.xodr").write_text(SIGNS_AND_LIGHTS)
     with started("watch", folder, "--map", tmp_path / "street.xodr") as (_, address):
         page = page_of(browser, address + "?flat&t=10")
