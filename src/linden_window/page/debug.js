@@ -23,9 +23,9 @@ export class DebugShapes {
     /** @type {Shape[]} */
     this.shapes = [];
     this.isStale = false;
-    this.lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true, depthTest: false }));
+    this.lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true, depthTest: false, fog: false }));
     this.points = new Points(
-      new BufferGeometry(), new PointsMaterial({ vertexColors: true, size: 7, sizeAttenuation: false, depthTest: false }));
+      new BufferGeometry(), new PointsMaterial({ vertexColors: true, size: 7, sizeAttenuation: false, depthTest: false, fog: false }));
     this.lines.frustumCulled = this.points.frustumCulled = false;
     this.lines.renderOrder = this.points.renderOrder = 5;
     this.texts = new Group();
@@ -136,7 +136,7 @@ function textOf(shape) {
   context.strokeText(shape.text, 6, 29);
   context.fillStyle = `rgb(${shape.colour.join(",")})`;
   context.fillText(shape.text, 6, 29);
-  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false, sizeAttenuation: false }));
+  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false, fog: false, sizeAttenuation: false }));
   sprite.position.set(shape.at[0], shape.at[2], shape.at[1]);
   sprite.scale.set((0.045 * canvas.width) / canvas.height, 0.045, 1);
   sprite.renderOrder = 6;

@@ -105,7 +105,7 @@ export function aboutActor(actor, pose) {
       { name: "steer", value: `${((pose.steer * 180) / Math.PI).toFixed(0)}°` },
     );
   }
-  lines.push({ name: "place", value: `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}, ${pose.z.toFixed(1)} m` });
+  lines.push({ name: "place, m", value: `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}, ${pose.z.toFixed(1)}` });
   return lines;
 }
 
