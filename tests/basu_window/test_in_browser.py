@@ -14,7 +14,7 @@ from basu.records.history.files import read_history
 from browsers import running_browser
 from fakes.run_records import crashing, record, written
 from opendrive_texts import SIGNS_AND_LIGHTS
-from pages import WAIT_MS, page_of
+from window_pages import WAIT_MS, page_of
 
 BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
 PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],

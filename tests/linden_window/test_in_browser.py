@@ -7,7 +7,7 @@ from playwright.sync_api import Browser
 
 from browsers import running_browser
 from linden_window.link import PageLink
-from pages import WAIT_MS, begin, drive, page_of
+from window_pages import WAIT_MS, begin, drive, page_of
 
 BY_PROCESSOR = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 

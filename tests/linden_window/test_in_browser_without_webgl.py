@@ -2,7 +2,7 @@
 
 from browsers import running_browser
 from linden_window.link import PageLink
-from pages import WAIT_MS, begin, drive, page_of
+from window_pages import WAIT_MS, begin, drive, page_of
 
 NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 

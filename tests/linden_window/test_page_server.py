@@ -14,7 +14,7 @@ from linden_window.hub import MOST_NOTES, MOST_PAGES, Hub
 from linden_window.link import PageLink
 from linden_window.page_server import LARGEST_ORDER, ORDERS_EACH_S, page_file
 from linden_window.poses import POSE, message
-from pages import fetched
+from window_pages import fetched
 
 FRAME = message(1, 0.05, np.zeros(3, POSE))
 

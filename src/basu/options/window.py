@@ -32,6 +32,7 @@ class WindowOptions(Settings):
             help="show the drive in a page of the browser and print its address; P takes over control",
             group=WINDOW,
             repeats=False,
+            rival="window",
         ),
     ] = False
     hud: Annotated[
@@ -42,6 +43,7 @@ class WindowOptions(Settings):
             bare="camera",
             advice="an agent is named before --hud, as in `basu run basic --hud`",
             repeats=False,
+            rival="window",
         ),
     ] = None
     hud_size: Annotated[
@@ -72,10 +74,8 @@ class WindowOptions(Settings):
         """Check the options of the window.
 
         Raises:
-            UserError: two windows, a picture of no window, or a size beyond the limits.
+            UserError: a picture of no window, or a size beyond the limits.
         """
-        if self.watch and self.hud is not None:
-            raise UserError("--watch and --hud are two windows of one drive; choose one")
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
         _check_size("--hud-size", self.hud_size, WINDOWS)
