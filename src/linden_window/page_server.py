@@ -188,7 +188,7 @@ class PageServer:
                     await asyncio.wait_for(connection.send(message), _WAITS_S)
         except ConnectionClosed:
             return
-        except TimeoutError:
+        except asyncio.TimeoutError:
             connection.transport.abort()
 
     async def _receive(self, connection: ServerConnection, number: int) -> None:

@@ -123,7 +123,7 @@ def test_a_pause_holds_the_frames_until_the_world_goes_on(served: Served) -> Non
             while True:
                 message = await asyncio.wait_for(page.recv(), 1.0)  # thirty frames of a world that goes on
                 last = HEADER.unpack_from(message)[1] if isinstance(message, bytes) else last
-        except TimeoutError:
+        except asyncio.TimeoutError:
             return last
 
     held, stepped = asyncio.run(pause())
