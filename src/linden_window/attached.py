@@ -5,7 +5,7 @@ import logging
 from typing import TYPE_CHECKING
 
 from linden_window.control import carry_out
-from linden_window.link import PageLink
+from linden_window.link import PageLink, StartingLink
 from linden_window.observer import WorldObserver
 
 if TYPE_CHECKING:
@@ -19,22 +19,18 @@ class AttachedWindow:
     """The process of the pages and what the server sends to it."""
 
     def __init__(self, *, may_control: bool, port: int) -> None:
-        """Start the process, which makes the scene ready while the server starts.
+        """Start the process, which takes a second, while the server starts."""
+        self._starting = StartingLink(*(("--control",) if may_control else ()), port=port)
+        self._link: PageLink | None = None
+
+    def attach(self, server: "Server") -> str:
+        """Show a server's world from now on; return the address of the page.
 
         Raises:
-            UserError: the port is taken.
-            ModuleNotFoundError: the WebSocket library is not installed.
+            UserError: the port of the page is taken.
         """
-        self._link = PageLink.start(*(("--control",) if may_control else ()), port=port)
-
-    @property
-    def address(self) -> str:
-        """The address of the page."""
-        return self._link.address
-
-    def attach(self, server: "Server") -> None:
-        """Show a server's world from now on."""
-        link, context = self._link, server.context
+        self._link = link = self._starting.ready()
+        context = server.context
         observer = WorldObserver(context.world, link)
 
         def read(clock: "FrameClock") -> bool:
@@ -47,10 +43,14 @@ class AttachedWindow:
 
         server.show(link.fileno(), observer.after_frame, read)
         observer.after_frame()  # the map, so that its scene is ready before the first page
+        return link.address
 
     def close(self) -> None:
         """End the process of the pages."""
-        self._link.close()
+        if self._link is None:
+            self._starting.end()
+        else:
+            self._link.close()
 
 
 if importlib.util.find_spec("websockets") is None:

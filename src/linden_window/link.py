@@ -25,7 +25,8 @@ NOTE, FRAME, BLOB = b"J", b"F", b"B"
 MOST_WAITING = 64 * 1024 * 1024
 """More bytes than this waiting mean that the process of the pages has stopped; then the link ends."""
 _BUFFER = 1024 * 1024
-START_S = 20.0
+START_S = 60.0
+"""How long the process may take to open its port: a second, or many of them on a busy machine."""
 
 
 class PageLink:
@@ -51,33 +52,7 @@ class PageLink:
         Raises:
             UserError: the process ends at once, such as because its port is taken.
         """
-        ours, theirs = socket.socketpair()
-        for end in (ours, theirs):
-            end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER)
-        command = [
-            sys.executable, "-m", "linden_window", "--link", str(theirs.fileno()), "--host", host, "--port", str(port),
-            *options,
-        ]  # fmt: skip
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        process = subprocess.Popen(  # noqa: S603 - our own module
-            command, pass_fds=(theirs.fileno(),), stdin=subprocess.DEVNULL, env=environment, start_new_session=True
-        )
-        theirs.close()
-        ours.settimeout(START_S)
-        first = b""
-        try:
-            while not first.endswith(b"\n"):
-                data = ours.recv(4096)
-                if not data:
-                    break
-                first += data
-        except TimeoutError:
-            pass
-        said = json.loads(first) if first.endswith(b"\n") else {"error": "the process of the window did not start"}
-        if "error" in said:
-            process.terminate()
-            raise UserError(said["error"])
-        return cls(ours, process, said["address"])
+        return StartingLink(*options, host=host, port=port).ready()
 
     def fileno(self) -> int:
         """Return the number of the socket, for a selector."""
@@ -160,6 +135,53 @@ class PageLink:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+
+
+class StartingLink:
+    """The process of the pages while it starts, so that its parent can start beside it."""
+
+    def __init__(self, *options: str, host: str = "127.0.0.1", port: int = 0) -> None:
+        """Start the process."""
+        self._ours, theirs = socket.socketpair()
+        for end in (self._ours, theirs):
+            end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER)
+        command = [
+            sys.executable, "-m", "linden_window", "--link", str(theirs.fileno()), "--host", host, "--port", str(port),
+            *options,
+        ]  # fmt: skip
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        self._process = subprocess.Popen(  # noqa: S603 - our own module
+            command, pass_fds=(theirs.fileno(),), stdin=subprocess.DEVNULL, env=environment, start_new_session=True
+        )
+        theirs.close()
+
+    def ready(self) -> PageLink:
+        """Return the link once the process has opened its port.
+
+        Raises:
+            UserError: the process ends at once, such as because its port is taken.
+        """
+        self._ours.settimeout(START_S)
+        first = b""
+        try:
+            while not first.endswith(b"\n"):
+                data = self._ours.recv(4096)
+                if not data:
+                    break
+                first += data
+        except TimeoutError:
+            pass
+        said = json.loads(first) if first.endswith(b"\n") else {"error": "the process of the window did not start"}
+        if "error" in said:
+            self.end()
+            raise UserError(said["error"])
+        return PageLink(self._ours, self._process, said["address"])
+
+    def end(self) -> None:
+        """End the process before it is ready."""
+        self._ours.close()
+        self._process.terminate()
+        self._process.wait()
 
 
 def _finite(value: Any) -> Any:  # noqa: ANN401 - any value of JSON

@@ -10,6 +10,7 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from linden.errors import UserError
 from linden_window.hub import MOST_NOTES, MOST_PAGES, Hub
 from linden_window.link import PageLink
 from linden_window.page_server import LARGEST_ORDER, ORDERS_EACH_S, page_file
@@ -180,6 +181,12 @@ def test_pages_learn_that_the_source_has_ended(link: PageLink) -> None:
             return json.loads(await asyncio.wait_for(page.recv(), 20))
 
     assert asyncio.run(end())["type"] == "end"
+
+
+def test_a_port_that_is_taken_gets_a_sentence(link: PageLink) -> None:
+    taken = urlsplit(link.address).port
+    with pytest.raises(UserError, match=f"port {taken} cannot be opened"):
+        PageLink.start(port=taken)
 
 
 def test_a_source_with_a_process_that_has_died_goes_on(link: PageLink) -> None:

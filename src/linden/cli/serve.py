@@ -92,8 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
 
                 started = make_server(arguments, first_start)
                 if window is not None:
-                    window.attach(started.server)
-                    _say(f"linden: window {window.address}")
+                    _say(f"linden: window {window.attach(started.server)}")
                 _say(f"linden: ready, rpc port {started.rpc_port}, streaming port {started.streaming_port}")
             if arguments.gates:
                 started.server.accept_only(os.getppid())
@@ -111,7 +110,7 @@ def _window_of(arguments: argparse.Namespace) -> Any:  # noqa: ANN401 - of anoth
     """Start the process of the window's pages, if the user wants a window; None otherwise.
 
     Raises:
-        UserError: the package of the window is not installed, or its port is taken.
+        UserError: the package of the window is not installed.
     """
     if not (arguments.window or arguments.window_control):
         return None
