@@ -28,6 +28,8 @@ LONGEST_SENTENCE = 25
 TREES: dict[str, tuple[str, ...]] = {
     "src/linden": ("src/linden/**/*.py",),
     "src/basu": ("src/basu/**/*.py",),
+    "src/linden_window": ("src/linden_window/**/*.py",),
+    "src/basu_window": ("src/basu_window/**/*.py",),
     "docs": ("docs/**/*.md", "README.md", "CONTRIBUTING.md", "examples/**/*.md"),
     "tests": ("tests/**/*.py",),
 }

@@ -40,6 +40,7 @@ COMMANDS = {
     "compare": Command("results", "put runs side by side"),
     "experiment": Command("driving", "drive the thesis's test runs again"),
     "metrics": Command("recordings", "run a metric of your own on a recording"),
+    "watch": Command("recordings", "show recorded runs in a page of the browser"),
     "replay": Command("recordings", "play a run again"),
     "ros": Command("ros", "ROS bags of runs, and runs of ROS bags"),
     "list": Command("results", "show the agents and routes that come with BASU"),

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING
+import importlib
+from typing import TYPE_CHECKING, Any
 
 from basu.agents.manual.devices import Devices, check_display
 from basu.agents.manual.inputs import Person
@@ -33,8 +34,10 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
     for path in (options.record_keys, options.hud_screenshot):
         if path is not None and not path.resolve().parent.is_dir():
             raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
-    devices = None
-    if _has_window(options, by_hand=by_hand):
+    devices: InputSource | None = None
+    if options.watch:
+        devices = window_module("page_input").PageInput()
+    elif _has_window(options, by_hand=by_hand):
         check_display()
         devices = Devices()
     source: InputSource
@@ -43,7 +46,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
     elif devices is not None:
         source = devices
     elif options.record_keys is not None:
-        raise UserError("--record-keys records what a person does, and there is no window; add --hud")
+        raise UserError("--record-keys records what a person does, and there is no window; add --watch or --hud")
     else:
         return None
     return Person(
@@ -51,6 +54,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
         drives_first=by_hand,
         taken_by_any_input=by_hand,
         live=options.keys is None,
+        devices=devices,
     )
 
 
@@ -62,7 +66,9 @@ def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseMan
     found: list[BaseManager] = []
     if options.keys is not None or options.record_keys is not None:
         found.append(KeysManager(person.source, options.record_keys))
-    if _has_window(options, by_hand=person.drives_first):
+    if options.watch:
+        found.append(window_module("live").WatchManager(live, person, person.devices, agent, print))
+    elif _has_window(options, by_hand=person.drives_first):
         found.append(Hud(live, person, options, agent))
     return found
 
@@ -70,6 +76,21 @@ def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseMan
 def _has_window(options: DriveOptions, *, by_hand: bool) -> bool:
     """Whether there is one: a person at devices needs it."""
     return options.hud is not None or (by_hand and options.keys is None)
+
+
+def window_module(name: str) -> Any:  # noqa: ANN401 - of another distribution
+    """Return a module of the window's package.
+
+    Raises:
+        UserError: the package is not installed.
+    """
+    try:
+        importlib.import_module("websockets")
+        return importlib.import_module(f"basu_window.{name}")
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"the page needs the package {error.name}; install it with: pip install 'linden[window]'"
+        ) from None
 
 
 class KeysManager(BaseManager):
