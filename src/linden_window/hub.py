@@ -18,7 +18,7 @@ _KEPT = ("actors", "weather", "lights", "lamps", "settings", "route", "panel", "
 
 
 class PageQueue:
-    """What waits for one page."""
+    """Frames and notes that wait to be sent to one page."""
 
     def __init__(self) -> None:
         self.notes: deque[str] = deque()
@@ -28,7 +28,7 @@ class PageQueue:
         self.wakes = asyncio.Event()
 
     def note(self, text: str) -> None:
-        """Queue a note."""
+        """Append a note; a page for which too many notes wait counts as overrun."""
         self.is_overrun |= len(self.notes) >= MOST_NOTES
         if not self.is_overrun:
             self.notes.append(text)
@@ -74,7 +74,7 @@ class Hub:
         return queue
 
     def leave(self, queue: PageQueue) -> None:
-        """Forget a page."""
+        """Remove a page that has closed its connection."""
         self._pages.pop(queue, None)
 
     def note(self, facts: dict[str, Any]) -> None:
@@ -82,13 +82,13 @@ class Hub:
         kind = str(facts.get("type", ""))
         text = json.dumps(facts, separators=(",", ":"))
         if kind == "scene" and facts.get("number") != self._scene_number:
-            self._scene_number, self._last = facts.get("number"), {}  # what was said of the last world holds no more
+            self._scene_number, self._last = facts.get("number"), {}  # notes of the last world are out of date
         if kind == "scene" or kind in _KEPT:
             self._last[kind] = text
         for queue in self._pages:
             queue.note(text)
 
     def frame(self, packed: bytes) -> None:
-        """Show a frame to all pages."""
+        """Replace the frame that waits for each page by a newer one."""
         for queue in self._pages:
             queue.show(packed)

@@ -141,7 +141,7 @@ class StartingLink:
     """The process of the pages while it starts, so that its parent can start beside it."""
 
     def __init__(self, *options: str, host: str = "127.0.0.1", port: int = 0) -> None:
-        """Start the process."""
+        """Start the process, with one end of a socket pair as its link."""
         self._ours, theirs = socket.socketpair()
         for end in (self._ours, theirs):
             end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER)

@@ -46,7 +46,7 @@ class Window:
         await self._server.close()
 
     def frame(self, packed: bytes) -> None:
-        """Show a frame."""
+        """Send a frame of the server to all open pages."""
         self._hub.frame(packed)
 
     def note(self, facts: dict[str, Any]) -> None:

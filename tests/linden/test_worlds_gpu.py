@@ -1,4 +1,4 @@
-"""Worlds on a GPU: the kernels in numba's simulator, and what is said where no GPU can be used."""
+"""Worlds on a GPU: the kernels in numba's simulator, and the sentences where no GPU can be used."""
 
 import os
 import subprocess

@@ -11,6 +11,6 @@ if TYPE_CHECKING:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the runs until Ctrl-C."""
+    """Show the records of runs in the browser until Ctrl-C."""
     code: int = window_module("watch").run(arguments)
     return code
