@@ -6,6 +6,7 @@ The hypothesis profile is repeatable and has no deadlines, because kernels compi
 import functools
 import gc
 import importlib
+import importlib.util
 import itertools
 import os
 import signal
@@ -25,40 +26,42 @@ if coverage.Coverage.current() is not None:
         for library in ("carla", "matplotlib.pyplot", "numba", "pandas", "pyarrow.parquet", "pydantic"):
             importlib.import_module(library)
 
+pytest_plugins = ["basu_fixtures"] if importlib.util.find_spec("basu") else []  # tests of linden do without basu
+
 LONGEST = (
-    "basu/running/scenario_runs/test_catalogue.py",
-    "basu/running/test_run.py",
-    "basu/running/scenario_runs/test_command.py",
-    "basu/test_rllib.py",
-    "basu/agents/ros/test_run_with_ros1.py",
-    "basu/agents/builtin/test_behavioral_live.py",
-    "basu/test_api.py",
-    "linden/cli/test_serve.py",
-    "linden/authoring/aisan/test_convert.py",
-    "linden/test_fuzzed_files.py",
-    "basu/output/hud/test_live.py",
-    "basu/test_notebook.py",
-    "basu/managers/test_traffic_manager.py",
-    "docs/test_site.py",
-    "basu/campaigns/test_campaign.py",
-    "test_wheel.py",
-    "basu/sumo/test_bridge.py",
-    "linden/sensors/camera/picture/test_shade.py",
-    "basu/test_python_api_page.py",
-    "linden/authoring/streets/test_linden.py",
-    "basu/campaigns/search/test_search_campaign.py",
-    "basu/running/test_series.py",
-    "linden/authoring/sumo/test_sumo_people.py",
-    "basu/managers/test_conduct.py",
-    "linden/authoring/sumo/test_sumo_network.py",
-    "linden/authoring/lanelet2/test_bus_stops.py",
-    "basu/running/test_run_folder.py",
-    "basu/running/test_parallel_runs.py",
-    "linden/authoring/lanelet2/test_convert.py",
-    "basu/sumo/test_run_with_sumo.py",
-    "basu/managers/test_scenario_manager.py",
-    "basu/test_gym_vector.py",
-    "basu/test_incident.py",
+    "packages/basu/tests/running/scenario_runs/test_catalogue.py",
+    "packages/basu/tests/running/test_run.py",
+    "packages/basu/tests/running/scenario_runs/test_command.py",
+    "packages/basu/tests/test_rllib.py",
+    "packages/basu-ros/tests/agents/test_run_with_ros1.py",
+    "packages/basu/tests/agents/builtin/test_behavioral_live.py",
+    "packages/basu/tests/test_api.py",
+    "packages/linden/tests/cli/test_serve.py",
+    "packages/linden-maps/tests/aisan/test_convert.py",
+    "packages/linden/tests/test_fuzzed_files.py",
+    "packages/basu-window/tests/hud/test_live.py",
+    "packages/basu/tests/test_notebook.py",
+    "packages/basu/tests/managers/test_traffic_manager.py",
+    "tests/docs/test_site.py",
+    "packages/basu/tests/campaigns/test_campaign.py",
+    "tests/test_wheel.py",
+    "packages/basu-sumo/tests/test_bridge.py",
+    "packages/linden/tests/sensors/camera/picture/test_shade.py",
+    "packages/basu/tests/test_python_api_page.py",
+    "packages/linden-maps/tests/streets/test_linden.py",
+    "packages/basu-search/tests/test_search_campaign.py",
+    "packages/basu/tests/running/test_series.py",
+    "packages/linden-maps/tests/sumo/test_sumo_people.py",
+    "packages/basu/tests/managers/test_conduct.py",
+    "packages/linden-maps/tests/sumo/test_sumo_network.py",
+    "packages/linden-maps/tests/lanelet2/test_bus_stops.py",
+    "packages/basu/tests/running/test_run_folder.py",
+    "packages/basu/tests/running/test_parallel_runs.py",
+    "packages/linden-maps/tests/lanelet2/test_convert.py",
+    "packages/basu-sumo/tests/test_run_with_sumo.py",
+    "packages/basu/tests/managers/test_scenario_manager.py",
+    "packages/basu/tests/test_gym_vector.py",
+    "packages/basu/tests/test_incident.py",
 )
 """Files of tests that take longest, longest first: they start first, so that no worker idles at the end."""
 

@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from basu import simulator as simulator_module
-from basu.agents.adapters.replacement_modules import step_back
 from basu.agents.process import agent_process
 from basu.output.report import path_picture
+from basu_leaderboard.replacement_modules import step_back
 from kept_server import end_kept_server, kept_server
 from servers import RunningServer, running_server
 from shared_client import shared_client
 from tracing import untraced
 
-SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
+SHORT_ROUTE = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
 
 
 @pytest.fixture(autouse=True)
@@ -111,7 +111,7 @@ def kills(tmp_path: Path) -> Iterator[Kills]:
 def simulator() -> Iterator[RunningServer]:
     """One server for all runs of a session; each run puts its own things away."""
     with ExitStack() as stack:
-        with untraced():  # tests/compat and tests/linden measure the server's coverage
+        with untraced():  # tests/compat and packages/linden/tests measure the server's coverage
             running = stack.enter_context(running_server())
         stack.enter_context(shared_client(running.port))
         yield running

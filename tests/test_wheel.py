@@ -66,7 +66,11 @@ def run(environment: Path, folder: Path, *command: str) -> "subprocess.Completed
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_basu_run_drives_with_the_simulator_of_the_wheel(installed: Path, tmp_path: Path) -> None:
-    lines = (ROOT / "src" / "basu" / "routes" / "linden_short.xml").read_text(encoding="utf-8").splitlines()
+    lines = (
+        (ROOT / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml")
+        .read_text(encoding="utf-8")
+        .splitlines()
+    )
     points = [line for line in lines if "<position" in line or "<waypoint " in line][:3]
     (tmp_path / "piece.xml").write_text(ROUTE.format(points="".join(points)), encoding="utf-8")
     done = run(

@@ -84,7 +84,7 @@ def member_exists(name: str) -> bool:
 
 
 def test_what_does_not_exist_is_found() -> None:
-    assert not exists("src/basu/no_such_module.py")
-    assert exists("src/basu/agents")
+    assert not exists("packages/basu/src/basu/no_such_module.py")
+    assert exists("packages/basu/src/basu/agents")
     assert not member_exists("basu.no_such_module")
     assert member_exists("basu.agents.sight.Sight")

@@ -21,17 +21,17 @@ TUTORIALS = ROOT / "docs" / "tutorials"
 EXTRA = re.compile(r"pip install '(linden\[[\w,]+\])'")
 SAVED = re.compile(r"<!-- file (\S+) -->")
 ELSEWHERE = {
-    "basu run basic --routes routes/linden_short.xml": "tests/basu/running drives it",
+    "basu run basic --routes routes/linden_short.xml": "packages/basu/tests/running drives it",
     "basu run basic --routes routes/linden_short.xml --vehicles 30 --walkers 20 --seed 7": "takes 20 s",
-    "basu run forward --routes routes/linden_short.xml": "tests/basu/agents/builtin/test_baselines.py drives it",
-    "basu compare runs/ONE runs/ANOTHER": "the reader's runs; tests/basu/output/report/test_comparison.py",
+    "basu run forward --routes routes/linden_short.xml": "test_baselines.py drives it",
+    "basu compare runs/ONE runs/ANOTHER": "the reader's runs; packages/basu/tests/output/report/test_comparison.py",
     "basu run my_agent.py": "takes 20 s; test_examples.py loads the agent",
     "basu run stopping_agent.py": "takes 20 s; test_examples.py loads the agent",
     "basu run my_agent.py --vehicles 50 --walkers 30 --seed 7": "takes 60 s",
     "basu scenario run roundabout --agent my_agent.py": "takes a minute",
     "basu scenario run bin_lorry.xml --agent basic --agent forward": "takes 20 s",
     "basu scenario run bin_lorry.xml --agent basic --sweep 50 --seed 1 --vary ahead,stands": "takes minutes",
-    "linden serve": "does not end; tests/linden/cli/test_serve.py",
+    "linden serve": "does not end; packages/linden/tests/cli/test_serve.py",
     "basu run my_agent.py --routes routes/linden_short.xml --seed 1": "takes 20 s",
     "basu run my_agent.py --routes routes/linden_short.xml --seed 1 --require driving=0.99": "takes 20 s",
     "basu scenario run all --agent my_agent.py --junit junit.xml": "takes minutes",

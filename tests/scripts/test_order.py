@@ -5,8 +5,8 @@ from pathlib import Path
 
 import coverage
 import pytest
-
 from conftest import LONGEST
+
 from tracing import untraced, untraced_processes
 
 TESTS = Path(__file__).parents[1]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from basu.records.carla_log import Log, read_log
-from basu.records.carla_log.layouts import Kind, Physics
+from basu_carla_log import Log, read_log
+from basu_carla_log.layouts import Kind, Physics
 from fakes import recordings as made
 from linden.replay.file.packets import Frame
 from linden.replay.file.read import Recording

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from basu.errors import UserError
-from basu.records.carla_log import Log, read_log
-from basu.records.carla_log.layouts import Kind
-from basu.records.carla_log.scan import scan
+from basu_carla_log import Log, read_log
+from basu_carla_log.layouts import Kind
+from basu_carla_log.scan import scan
 from fakes import recordings as made
 
 HERO = made.actor(9, "vehicle.tesla.model3", 1, attributes=[(3, "role_name", "hero"), (4, "color", "1,2,3")])

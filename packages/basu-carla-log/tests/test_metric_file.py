@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
-from basu.records.carla_log.metric_file import run_metric
+from basu_carla_log.metric_file import run_metric
 
 GOOD = """
-from basu.records.carla_log.metric_file import BasicMetric
+from basu_carla_log.metric_file import BasicMetric
 
 class Mine(BasicMetric):
     def _create_metric(self, town_map, log, criteria):
@@ -37,7 +37,7 @@ def test_a_metric_is_handed_map_log_and_criteria(tmp_path: Path, capsys: pytest.
 
 
 def test_a_file_written_for_scenario_runner_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = GOOD.replace("basu.records.carla_log.metric_file", "srunner.metrics.examples.basic_metric")
+    text = GOOD.replace("basu_carla_log.metric_file", "srunner.metrics.examples.basic_metric")
     assert run(tmp_path, text) == "Mine"
     assert capsys.readouterr().out.startswith("map log")
     assert "srunner" not in sys.modules

@@ -7,9 +7,9 @@ import carla
 import numpy as np
 import pytest
 
-from basu.records.carla_log import read_log
-from basu.records.carla_log.layouts import NO_ACTOR
-from basu.records.carla_log.metrics_log import MetricsLog
+from basu_carla_log import read_log
+from basu_carla_log.layouts import NO_ACTOR
+from basu_carla_log.metrics_log import MetricsLog
 from fakes import recordings as made
 
 HERO, OTHER, WALKER, LIGHT = 9, 8, 3, 5

@@ -10,7 +10,7 @@ from fakes import recordings as made
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples" / "metrics"
-LINDEN = ROOT / "src" / "linden" / "data" / "Linden.xodr"
+LINDEN = ROOT / "packages" / "linden" / "src" / "linden" / "data" / "Linden.xodr"
 HERO, OTHER = 9, 8
 
 
@@ -64,7 +64,7 @@ def test_a_run_folder_brings_map_and_criteria(recording: Path, capsys: pytest.Ca
     (folder / "result.json").write_text(json.dumps({"infractions": [], "scoring": {"penalties": {"speeding": 0.8}}}))
     metric = folder / "told.py"
     metric.write_text(
-        "from basu.records.carla_log.metric_file import BasicMetric\n"
+        "from basu_carla_log.metric_file import BasicMetric\n"
         "class Told(BasicMetric):\n"
         "    def _create_metric(self, town_map, log, criteria):\n"
         "        print(town_map.name, log.get_total_frame_count(), criteria['speeding']['test_status'])\n"

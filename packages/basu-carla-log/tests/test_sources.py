@@ -7,7 +7,7 @@ import carla
 import pytest
 
 from basu.errors import UserError
-from basu.records.carla_log.sources import (
+from basu_carla_log.sources import (
     LOG_FILE,
     MAP_FILE,
     RESULT_FILE,
@@ -18,7 +18,7 @@ from basu.records.carla_log.sources import (
     source,
 )
 
-LINDEN = Path(__file__).parents[4] / "src" / "linden" / "data" / "Linden.xodr"
+LINDEN = Path(__file__).parents[3] / "packages" / "linden" / "src" / "linden" / "data" / "Linden.xodr"
 
 
 def test_a_runs_folder_has_its_log_map_and_result(tmp_path: Path) -> None:

@@ -9,15 +9,15 @@ import carla
 import numpy as np
 import pytest
 
-from basu.agents.adapters.adapted_agent import adapted
-from basu.agents.adapters.foreign_class import Dialect, ForeignAgent
-from basu.agents.adapters.provided.carla_data_provider import CarlaDataProvider, GameTime
-from basu.agents.adapters.provided.leaderboard_agent import AutonomousAgent
-from basu.agents.adapters.provided.scenario_runner_agent import AutonomousAgent as ScenarioRunnersAgent
 from basu.agents.loader import LoadedAgent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, UserError
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.base_manager import Run
+from basu_leaderboard.adapted_agent import adapted
+from basu_leaderboard.foreign_class import Dialect, ForeignAgent
+from basu_leaderboard.provided.carla_data_provider import CarlaDataProvider, GameTime
+from basu_leaderboard.provided.leaderboard_agent import AutonomousAgent
+from basu_leaderboard.provided.scenario_runner_agent import AutonomousAgent as ScenarioRunnersAgent
 from fakes.one_road import OPENDRIVE, one_road, way_along
 
 SPEEDOMETER = {"type": "sensor.speedometer", "id": "SPEED", "reading_frequency": 20}

@@ -13,14 +13,14 @@ import carla
 import numpy as np
 import pytest
 
-import basu.agents.adapters
-from basu.agents.adapters import replacement_modules
-from basu.agents.adapters.global_plan import Gps, global_plan
-from basu.agents.adapters.provided.carla_data_provider import CarlaDataProvider
+import basu_leaderboard
 from basu.errors import UserError
+from basu_leaderboard import replacement_modules
+from basu_leaderboard.global_plan import Gps, global_plan
+from basu_leaderboard.provided.carla_data_provider import CarlaDataProvider
 from fakes.one_road import one_road, way_along
 
-ENTRY = Path(basu.agents.adapters.__file__).parent / "entry" / "basu_agent.py"
+ENTRY = Path(basu_leaderboard.__file__).parent / "entry" / "basu_agent.py"
 AGENT = """
 class Mine(AutonomousAgent):
     def setup(self):
@@ -140,7 +140,5 @@ def test_an_agent_of_the_leaderboard_is_no_exported(tmp_path: Path) -> None:
 
 
 def test_python_tells_where_the_file_is() -> None:
-    told = subprocess.run(
-        [sys.executable, "-m", "basu.agents.adapters"], capture_output=True, text=True, check=True
-    ).stdout
+    told = subprocess.run([sys.executable, "-m", "basu_leaderboard"], capture_output=True, text=True, check=True).stdout
     assert Path(told.strip()) == ENTRY

@@ -11,7 +11,7 @@ import pytest
 from basu.cli import main
 from servers import RunningServer
 
-EXAMPLE = Path(__file__).parents[4] / "examples" / "leaderboard_agent.py"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "leaderboard_agent.py"
 SEEING = """
 import carla
 from leaderboard.autoagents.autonomous_agent import AutonomousAgent

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.adapters.exported_agent import ExportConfig, read_config
 from basu.errors import UserError
+from basu_leaderboard.exported_agent import ExportConfig, read_config
 
 
 def written(folder: Path, text: str) -> str:

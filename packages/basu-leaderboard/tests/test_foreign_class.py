@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from basu.agents.adapters.adapted_agent import LeaderboardAgent
-from basu.agents.adapters.foreign_class import Dialect
 from basu.agents.loader import LoadedAgent, load_agent
 from basu.errors import UserError
+from basu_leaderboard.adapted_agent import LeaderboardAgent
+from basu_leaderboard.foreign_class import Dialect
 
 OURS = "from leaderboard.autoagents.autonomous_agent import AutonomousAgent\n"
 SCENARIO_RUNNER = "from srunner.autoagents.autonomous_agent import AutonomousAgent\n"

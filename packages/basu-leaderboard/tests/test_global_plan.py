@@ -1,4 +1,4 @@
-"""Tests of ``basu.agents.adapters.global_plan``."""
+"""Tests of ``basu_leaderboard.global_plan``."""
 
 import enum
 import math
@@ -10,8 +10,8 @@ import carla
 import numpy as np
 import pytest
 
-from basu.agents.adapters.global_plan import Gps, Place, global_plan, reference, road_options
-from basu.agents.adapters.provided.planned_agent import RoadOption
+from basu_leaderboard.global_plan import Gps, Place, global_plan, reference, road_options
+from basu_leaderboard.provided.planned_agent import RoadOption
 from fakes.one_road import OPENDRIVE, one_road
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from basu.agents.adapters.measurements import as_measurement
 from basu.agents.sensor_file import parse_sensors
+from basu_leaderboard.measurements import as_measurement
 
 RNG = np.random.default_rng(5)
 

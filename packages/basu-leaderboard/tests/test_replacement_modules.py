@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.adapters import replacement_modules
+from basu_leaderboard import replacement_modules
 
 
 @pytest.fixture

@@ -1,15 +1,15 @@
-"""Tests of ``basu.agents.adapters.sensor_sets``."""
+"""Tests of ``basu_leaderboard.sensor_sets``."""
 
 import logging
 from typing import Any
 
 import pytest
 
-from basu.agents.adapters.foreign_class import Dialect
-from basu.agents.adapters.sensor_sets import FIXED, LIDAR_OF_SCENARIO_RUNNER, theirs, translated
 from basu.agents.sensor_file import parse_sensors, read_sensors
 from basu.errors import UserError
 from basu.files import PACKAGE_FOLDER
+from basu_leaderboard.foreign_class import Dialect
+from basu_leaderboard.sensor_sets import FIXED, LIDAR_OF_SCENARIO_RUNNER, theirs, translated
 
 AT = {"x": 0.7, "y": -0.4, "z": 1.6, "roll": 0.0, "pitch": 0.0, "yaw": -45.0}
 CAMERA = {"type": "sensor.camera.rgb", "id": "Left", **AT, "width": 300, "height": 200, "fov": 100}

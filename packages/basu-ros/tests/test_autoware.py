@@ -6,9 +6,9 @@ from types import SimpleNamespace as Fake
 import numpy as np
 import pytest
 
-from basu.ros import autoware
-from basu.ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu.ros.types import Generation, types_of
+from basu_ros import autoware
+from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 TOP, SECOND = Mount("top", "sensor.lidar.ray_cast", 0.0, 0.0, 2.9), Mount("second", "sensor.lidar.ray_cast")

@@ -8,10 +8,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from basu.errors import UserError
-from basu.ros.bag_file import BagFile
-from basu.ros.moment import Control, Moment, Motion, Vehicle
-from basu.ros.topics import TF_STATIC, first_messages, moment_messages, vehicle_topics
-from basu.ros.types import Generation
+from basu_ros.bag_file import BagFile
+from basu_ros.moment import Control, Moment, Motion, Vehicle
+from basu_ros.topics import TF_STATIC, first_messages, moment_messages, vehicle_topics
+from basu_ros.types import Generation
 
 VEHICLE = Vehicle("hero")
 FRAMES = 5

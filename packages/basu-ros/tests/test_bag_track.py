@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros.bag_file import BagFile
-from basu.ros.bag_track import read_track
-from basu.ros.moment import Control, Moment, Motion, Vehicle
-from basu.ros.topics import Message, Topic, control_of, odometry_of
-from basu.ros.types import Generation
-from basu.ros.vehicle_messages import control_message, header, odometry
+from basu_ros.bag_file import BagFile
+from basu_ros.bag_track import read_track
+from basu_ros.moment import Control, Moment, Motion, Vehicle
+from basu_ros.topics import Message, Topic, control_of, odometry_of
+from basu_ros.types import Generation
+from basu_ros.vehicle_messages import control_message, header, odometry
 
 NOBODY = Control()
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros.dds import Node
-from basu.ros.dds_domain import domain_of_environment, is_local
-from basu.ros.dds_types import dds_name, dds_type
-from basu.ros.topics import (
+from basu_ros.dds import Node
+from basu_ros.dds_domain import domain_of_environment, is_local
+from basu_ros.dds_types import dds_name, dds_type
+from basu_ros.topics import (
     TF_STATIC,
     Topic,
     control_of,
@@ -24,10 +24,10 @@ from basu.ros.topics import (
     odometry_of,
     vehicle_topics,
 )
-from basu.ros.types import Generation, Types, types_of
+from basu_ros.types import Generation, Types, types_of
 from fakes.ros_vehicle import CLOUD, VEHICLE, moment
 
-PEER = Path(__file__).parents[2] / "fakes" / "plain_dds_peer.py"
+PEER = Path(__file__).parents[3] / "tests" / "fakes" / "plain_dds_peer.py"
 
 
 @pytest.fixture
@@ -124,6 +124,6 @@ def test_the_environment_may_keep_ros_on_this_machine(monkeypatch: pytest.Monkey
 def test_without_the_wheel_there_is_a_sentence(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     for part in ("core", "idl", "builtin"):
         monkeypatch.setitem(sys.modules, f"cyclonedds.{part}", None)
-    monkeypatch.delitem(sys.modules, f"basu.ros.{module}")
+    monkeypatch.delitem(sys.modules, f"basu_ros.{module}")
     with pytest.raises(UserError, match=r'pip install "linden\[ros2\]"'):
-        importlib.import_module(f"basu.ros.{module}")
+        importlib.import_module(f"basu_ros.{module}")

@@ -11,12 +11,12 @@ from types import SimpleNamespace as Fake
 import numpy as np
 import pytest
 
-from basu.output.ros.record_bag import event_topics
-from basu.ros import autoware
-from basu.ros.dds import Node
-from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount, Vehicle
-from basu.ros.sensor_messages import SEMANTIC_ROW
-from basu.ros.topics import (
+from basu_ros import autoware
+from basu_ros.dds import Node
+from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.output.record_bag import event_topics
+from basu_ros.sensor_messages import SEMANTIC_ROW
+from basu_ros.topics import (
     STATUS,
     Message,
     Topic,

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros import rospy_start
-from basu.ros.autoware_ai import COMMAND, old_types
-from basu.ros.ros1 import Node
-from basu.ros.rospy_start import INSTALL, master_uri
-from basu.ros.topics import (
+from basu_ros import rospy_start
+from basu_ros.autoware_ai import COMMAND, old_types
+from basu_ros.ros1 import Node
+from basu_ros.rospy_start import INSTALL, master_uri
+from basu_ros.topics import (
     TF_STATIC,
     Message,
     Topic,
@@ -28,12 +28,12 @@ from basu.ros.topics import (
     odometry_of,
     vehicle_topics,
 )
-from basu.ros.types import Generation, Types, types_of
+from basu_ros.types import Generation, Types, types_of
 from fakes.ros_vehicle import CLOUD, VEHICLE, moment
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 
 __all__ = ["master", "roscore", "starts"]
-PEER = Path(__file__).parents[2] / "fakes" / "plain_rospy_peer.py"
+PEER = Path(__file__).parents[3] / "tests" / "fakes" / "plain_rospy_peer.py"
 LONG_S = 30.0
 
 

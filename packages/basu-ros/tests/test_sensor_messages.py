@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from basu.ros import vehicle_messages
-from basu.ros.moment import Mount
-from basu.ros.sensor_messages import CITYSCAPES, SEMANTIC_ROW, sensor_messages, sensor_types
-from basu.ros.types import Generation, types_of
+from basu_ros import vehicle_messages
+from basu_ros.moment import Mount
+from basu_ros.sensor_messages import CITYSCAPES, SEMANTIC_ROW, sensor_messages, sensor_types
+from basu_ros.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 HEADER = vehicle_messages.header(TYPES, 1.25, "hero/S")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros.types import Generation, types_of
+from basu_ros.types import Generation, types_of
 
 
 @pytest.mark.parametrize("generation", Generation)
@@ -54,6 +54,6 @@ def test_arrays_of_fixed_length_are_full_of_zeros() -> None:
 
 def test_a_missing_rosbags_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rosbags", None)
-    monkeypatch.delitem(sys.modules, "basu.ros")
+    monkeypatch.delitem(sys.modules, "basu_ros")
     with pytest.raises(UserError, match=r"pip install \"linden\[rosbag\]\""):
-        importlib.import_module("basu.ros")
+        importlib.import_module("basu_ros")

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from basu.campaigns.search.boundary_search import APART, BoundarySearch
-from basu.campaigns.search.findings import MAY, SURE
-from basu.campaigns.search.rounds import Known, Round, round_sizes, space_filling
-from basu.campaigns.search.surrogate import Surrogate
 from basu.campaigns.settings import Search
+from basu_search.boundary_search import APART, BoundarySearch
+from basu_search.findings import MAY, SURE
+from basu_search.rounds import Known, Round, round_sizes, space_filling
+from basu_search.surrogate import Surrogate
 from boundary_regions import HELD_OUT
 from boundary_regions import searched as drives_in
 

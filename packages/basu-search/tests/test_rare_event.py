@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from basu.campaigns.search.proposal import Part, drawn_from, guarded, guards_in, parts_of, weights_of
-from basu.campaigns.search.rare_event import CrossEntropy, estimate
-from basu.campaigns.search.rounds import Known, Round
 from basu.campaigns.settings import Estimate
+from basu_search.proposal import Part, drawn_from, guarded, guards_in, parts_of, weights_of
+from basu_search.rare_event import CrossEntropy, estimate
+from basu_search.rounds import Known, Round
 from rare_regions import REGIONS
 
 HALF_SPACE = REGIONS["one half space"]

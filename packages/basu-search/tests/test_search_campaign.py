@@ -21,10 +21,10 @@ from basu.campaigns.command import describe, run_campaign
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.planning import plan_of
 from basu.campaigns.report import write_campaign_report
-from basu.campaigns.search.findings import boundary_in, rare_in, searches_in
 from basu.campaigns.settings import read_campaign
 from basu.errors import UserError
 from basu.jobs.processes import Processes
+from basu_search.findings import boundary_in, rare_in, searches_in
 
 Write = Callable[..., Path]
 SEARCH = ("sweep = 10", "search = {drives = 24, batch = 4}")

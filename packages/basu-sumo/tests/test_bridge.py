@@ -7,8 +7,8 @@ import carla
 import pytest
 
 from basu import simulator as simulator_module
-from basu.sumo.bridge import ROLE, Bridge
-from basu.sumo.link import in_process
+from basu_sumo.bridge import ROLE, Bridge
+from basu_sumo.link import in_process
 from servers import RunningServer
 
 STEP_S = 0.05

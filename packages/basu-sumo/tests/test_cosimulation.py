@@ -10,7 +10,7 @@ import pytest
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options.run import RunOptions
-from basu.running.cosimulation import cosimulate
+from basu_sumo.cosimulation import cosimulate
 from servers import RunningServer
 
 pytest.importorskip("libsumo", reason="the extra for SUMO is not installed")
@@ -24,7 +24,7 @@ def shown(world: carla.World) -> list[carla.Actor]:
 @pytest.fixture
 def options(simulator: RunningServer, monkeypatch: pytest.MonkeyPatch) -> RunOptions:
     """The options of random trips at the shared simulator; its network is not checked against the map."""
-    monkeypatch.setattr("basu.running.cosimulation.MISFIT_M", float("inf"))
+    monkeypatch.setattr("basu_sumo.cosimulation.MISFIT_M", float("inf"))
     return RunOptions(host="127.0.0.1", port=simulator.port, timeout_s=60.0, seed=3)
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.sumo.link import Link, in_process
-from basu.sumo.passengers import BOARDING_S, Passengers
+from basu_sumo.link import Link, in_process
+from basu_sumo.passengers import BOARDING_S, Passengers
 
 STEP_S = 0.05
 
@@ -77,7 +77,7 @@ def test_a_passenger_alights_and_walks_on_and_the_late_one_is_left_behind(link: 
 
 
 def test_a_full_shuttle_takes_no_further_passenger(link: Link, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("basu.sumo.passengers.CAPACITY", 1)
+    monkeypatch.setattr("basu_sumo.passengers.CAPACITY", 1)
     ride = Ride(link)
     ride.go_on(2.0, None)
     ride.go_on(20.0, "S1")

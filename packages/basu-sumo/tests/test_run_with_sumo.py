@@ -70,7 +70,7 @@ def test_a_type_that_no_blueprint_shows_is_the_set_up_s_fault(
     def unknown(*_: object) -> str:
         raise UserError("SUMO's vehicle type 'ferry' is of the class 'ship', which no blueprint shows")
 
-    monkeypatch.setattr("basu.sumo.models.Models.of", unknown)
+    monkeypatch.setattr("basu_sumo.models.Models.of", unknown)
     options = ("--sumo", "random", "--vehicles", "5", "--seed", "3")
     code, result, _ = run(simulator, route_file, tmp_path / "runs", *options)
     assert code != 0

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from basu.sumo.frames import Pose
-from basu.sumo.sideways import Sideways
+from basu_sumo.frames import Pose
+from basu_sumo.sideways import Sideways
 
 STEP_S = 0.05
 

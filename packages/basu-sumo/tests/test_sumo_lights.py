@@ -6,7 +6,7 @@ from typing import Any
 
 import carla
 
-from basu.sumo.lights import Lights
+from basu_sumo.lights import Lights
 
 RED, YELLOW, GREEN = carla.TrafficLightState.Red, carla.TrafficLightState.Yellow, carla.TrafficLightState.Green
 

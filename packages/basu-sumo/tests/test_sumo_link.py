@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 
 from basu.errors import SimulatorError, UserError
-from basu.sumo import link as links
-from basu.sumo.frames import from_sumo, to_sumo
-from basu.sumo.link import connected, in_process
-from basu.sumo.models import Model, Models
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.scenario import config_in, made_of, named_folder
+from basu_sumo import link as links
+from basu_sumo.frames import from_sumo, to_sumo
+from basu_sumo.link import connected, in_process
+from basu_sumo.models import Model, Models
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.scenario import config_in, made_of, named_folder
 
 OFFSET_M = (643.3, 810.58)
 STEP_S = 0.05
@@ -249,7 +249,7 @@ def places_of(folder: Path, seed: int) -> list[dict[str, tuple[float, float]]]:
 def test_random_trips_follow_their_seed_and_replace_arrived_vehicles(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("basu.sumo.random_trips.LEAST_EDGES", 2)
+    monkeypatch.setattr("basu_sumo.random_trips.LEAST_EDGES", 2)
     first = places_of(folder, 3)
     assert first == places_of(folder, 3)
     assert first != places_of(folder, 4)

@@ -9,9 +9,9 @@ import pytest
 
 from basu.errors import UserError
 from basu.options.run import RunOptions
-from basu.sumo.link import Link, connected, in_process
-from basu.sumo.load import Load
-from basu.sumo.outputs import COLLISIONS, FOLDER, SAFETY, SUMMARY, TRIPS, Outputs
+from basu_sumo.link import Link, connected, in_process
+from basu_sumo.load import Load
+from basu_sumo.outputs import COLLISIONS, FOLDER, SAFETY, SUMMARY, TRIPS, Outputs
 
 STEP_S = 0.05
 

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from basu.sumo.frames import Pose
-from basu.sumo.link import Link, in_process
-from basu.sumo.mirrors import Mirrors
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.road_users import Look, RoadUser
-from basu.sumo.trip_ends import SIGHT_M, Streets, TripEnds
+from basu_sumo.frames import Pose
+from basu_sumo.link import Link, in_process
+from basu_sumo.mirrors import Mirrors
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.road_users import Look, RoadUser
+from basu_sumo.trip_ends import SIGHT_M, Streets, TripEnds
 
 pytest.importorskip("libsumo", reason="the extra for SUMO is not installed")
 STEP_S = 0.05
@@ -66,7 +66,7 @@ def test_a_trip_to_the_end_of_the_network_ends_there_in_sight(folder: Path) -> N
 
 
 def test_random_trips_begin_out_of_sight(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("basu.sumo.random_trips.LEAST_EDGES", 2)
+    monkeypatch.setattr("basu_sumo.random_trips.LEAST_EDGES", 2)
     link = in_process(folder / "small.empty.sumocfg", step_s=STEP_S, seed=0)
     trips = RandomTrips(link, 3, 1, lambda: ((0.0, 0.0),))
     trips.fill()

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from basu.sumo.link import Link, in_process
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.trip_ends import Streets
-from basu.sumo.trip_starts import TripStarts
+from basu_sumo.link import Link, in_process
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.trip_ends import Streets
+from basu_sumo.trip_starts import TripStarts
 
 pytest.importorskip("libsumo", reason="the extra for SUMO is not installed")
 STEP_S = 0.05
@@ -87,7 +87,7 @@ def test_other_trips_begin_as_planned(
 
 
 def test_a_random_trip_that_is_held_back_is_not_replaced(link: Link, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("basu.sumo.random_trips.LEAST_EDGES", 2)
+    monkeypatch.setattr("basu_sumo.random_trips.LEAST_EDGES", 2)
     starts = TripStarts(link, lambda: Streets(link))
     trips = RandomTrips(link, 1, 0, held=lambda: starts.held)
     driven(link, starts, FAR, 2)

@@ -18,7 +18,7 @@ from basu.gym_vector import ShuttleVectorEnv
 from servers import RunningServer
 
 pytestmark = pytest.mark.measured_processes
-EXAMPLE = Path(__file__).parents[2] / "examples" / "gym_training.py"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "gym_training.py"
 GENTLE = np.array([[0.4, 0.0], [0.6, 0.1]], np.float32)
 
 

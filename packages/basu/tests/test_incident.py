@@ -9,7 +9,7 @@ import pytest
 from basu.cli import main
 from servers import RunningServer
 
-PLOT = Path(__file__).parents[2] / "examples" / "passengers_plot.py"
+PLOT = Path(__file__).parents[3] / "examples" / "passengers_plot.py"
 
 
 @pytest.mark.slow

@@ -6,9 +6,9 @@ from pathlib import Path
 import nbformat
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 NOTEBOOK = ROOT / "examples" / "first_drive.ipynb"
-ROUTE = ROOT / "src" / "basu" / "routes" / "linden_short.xml"
+ROUTE = ROOT / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
 PIECE = slice(9, 14)  # of its points: past the stop sign that the agent of the notebook ignores
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import basu
 
-PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "python-api.md"
+PAGE = Path(__file__).parents[3] / "docs" / "how-to" / "python-api.md"
 
 
 @pytest.mark.slow

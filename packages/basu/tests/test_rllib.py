@@ -14,7 +14,7 @@ from basu.gym import ShuttleEnv
 from basu.gym_vector import ShuttleVectorEnv
 from ray_clusters import connected_cluster
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "rllib_training.py"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "rllib_training.py"
 
 
 @pytest.fixture(scope="module")

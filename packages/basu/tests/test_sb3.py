@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 BASELINE = ROOT / "examples" / "sb3_baseline"
 
 

@@ -2,10 +2,10 @@ from importlib import resources
 
 import pytest
 
-from linden.authoring.lanelet2.bus_stops import shuttle_stops
-from linden.authoring.lanelet2.convert import Wanted, convert
-from linden.authoring.lanelet2.second_reader import routes_of
 from linden.maps.opendrive.parse import parse
+from linden_maps.lanelet2.bus_stops import shuttle_stops
+from linden_maps.lanelet2.convert import Wanted, convert
+from linden_maps.lanelet2.second_reader import routes_of
 from tracing import untraced_here
 
 

@@ -6,20 +6,20 @@ import json
 import numpy as np
 import pytest
 
-from linden.authoring.autoware_folder import UNIVERSE, point_cloud_metadata
-from linden.authoring.lanelet2.model import bounds_of
-from linden.authoring.lanelet2.osm import osm_bytes, read_osm
-from linden.authoring.pointcloud.cloud import Cloud, in_map
-from linden.authoring.pointcloud.drive import Lidar, Place, drive
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
 from linden.cli import main
-from linden.cli.map_source import world_map_of
 from linden.errors import UserError
 from linden.maps.cache import MapCache
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh_cache import standing_of
 from linden.sensors.casting.choose import caster_of
 from linden.simulation.surroundings import scenery_of
+from linden_maps.autoware_folder import UNIVERSE, point_cloud_metadata
+from linden_maps.cli.map_source import world_map_of
+from linden_maps.lanelet2.model import bounds_of
+from linden_maps.lanelet2.osm import osm_bytes, read_osm
+from linden_maps.pointcloud.cloud import Cloud, in_map
+from linden_maps.pointcloud.drive import Lidar, Place, drive
+from linden_maps.pointcloud.pcd_writing import PcdWriter
 from vector_map_town import two_roads
 
 KERB_M = 0.05

@@ -5,8 +5,8 @@ from importlib import resources
 import carla
 import pytest
 
-from linden.authoring.statistics import count
 from linden.maps.opendrive.parse import parse
+from linden_maps.statistics import count
 from opendrive_texts import signal, street_through_junction
 
 

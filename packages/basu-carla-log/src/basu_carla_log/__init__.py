@@ -3,6 +3,6 @@
 No server is needed. ``read_log`` gives the columns, ``MetricsLog`` the queries, ``town_map`` the map a run lay in.
 """
 
-from basu.records.carla_log.log import Log, read_log
+from basu_carla_log.log import Log, read_log
 
 __all__ = ["Log", "read_log"]

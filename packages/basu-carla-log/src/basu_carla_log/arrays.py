@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.records.carla_log.layouts import Kind
+from basu_carla_log.layouts import Kind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.records.carla_log.log import Log
+    from basu_carla_log.log import Log
 
     F64 = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.records.carla_log.layouts import Physics
+    from basu_carla_log.layouts import Physics
 
 CM_PER_M = 100.0
 _COPIED = (

@@ -8,6 +8,7 @@ from pathlib import Path
 from basu.cli.driving import SIMULATOR
 from basu.cli.later import later
 from basu.options.run import RunOptions
+from basu.plugins import Command
 from basu.settings.command_line import add_options
 
 
@@ -33,7 +34,7 @@ def add_metrics(metrics: argparse.ArgumentParser) -> None:
         "--plot", type=Path, metavar="FILE.png", help="keep what the metric draws with matplotlib (further: FILE-2.png)"
     )
     metrics.add_argument("--debug", action="store_true", help="show the traceback of a metric that fails")
-    metrics.set_defaults(command=later("basu.cli.metrics:run"))
+    metrics.set_defaults(command=later("basu_carla_log.metrics_command:run"))
 
 
 def add_replay(replay: argparse.ArgumentParser) -> None:
@@ -58,4 +59,8 @@ def add_replay(replay: argparse.ArgumentParser) -> None:
     replay.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="times real time, 0 for unbraked (default: %(default)s)"
     )
-    replay.set_defaults(command=later("basu.cli.replay:run"))
+    replay.set_defaults(command=later("basu_carla_log.replay_command:run"))
+
+
+METRICS = Command("run a metric of your own on a recording", add_metrics)
+REPLAY = Command("play a run again", add_replay)

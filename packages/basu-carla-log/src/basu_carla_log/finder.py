@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from basu.records.carla_log import carla_values as values
-from basu.records.carla_log.arrays import locations_m
-from basu.records.carla_log.layouts import Kind
+from basu_carla_log import carla_values as values
+from basu_carla_log.arrays import locations_m
+from basu_carla_log.layouts import Kind
 
 if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
 
-    from basu.records.carla_log.layouts import Physics
-    from basu.records.carla_log.log import Log
+    from basu_carla_log.layouts import Physics
+    from basu_carla_log.log import Log
 
 Actor: TypeAlias = int | str  # an id, or a role name
 

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
-from basu.records.carla_log.layouts import (
+from basu.records.structured import StructuredArray
+from basu_carla_log.layouts import (
     MAGIC,
     RECORDS,
     VERSIONS,
@@ -31,8 +32,7 @@ from basu.records.carla_log.layouts import (
     Reader,
     must_be,
 )
-from basu.records.carla_log.scan import Place, scan
-from basu.records.structured import StructuredArray
+from basu_carla_log.scan import Place, scan
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

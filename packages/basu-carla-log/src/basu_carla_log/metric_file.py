@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.records.carla_log.metrics_log import MetricsLog
+    from basu_carla_log.metrics_log import MetricsLog
 
 
 class BasicMetric(ABC):

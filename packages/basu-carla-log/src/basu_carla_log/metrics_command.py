@@ -7,11 +7,12 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from basu.cli.recorder_log import read_recording
 from basu.errors import UserError
-from basu.records.carla_log.metric_file import drawn, off_screen, run_metric
-from basu.records.carla_log.metrics_log import MetricsLog
-from basu.records.carla_log.sources import AbsentMap, Source, criteria_of, read_criteria, read_map
+from basu.records.recording_files import read_map
+from basu_carla_log.metric_file import drawn, off_screen, run_metric
+from basu_carla_log.metrics_log import MetricsLog
+from basu_carla_log.recorder_log import read_recording
+from basu_carla_log.sources import AbsentMap, Source, criteria_of, read_criteria
 
 
 def run(arguments: argparse.Namespace) -> int:

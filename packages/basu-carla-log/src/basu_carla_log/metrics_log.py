@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.records.carla_log import carla_values as values
-from basu.records.carla_log.arrays import ActorArrays, actor_arrays
-from basu.records.carla_log.finder import Actor, Finder
-from basu.records.carla_log.layouts import Kind
+from basu_carla_log import carla_values as values
+from basu_carla_log.arrays import ActorArrays, actor_arrays
+from basu_carla_log.finder import Actor, Finder
+from basu_carla_log.layouts import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import carla
 
-    from basu.records.carla_log.log import Log
+    from basu_carla_log.log import Log
 
 
 class Collision(NamedTuple):

@@ -8,8 +8,8 @@ from typing import Any
 
 from tqdm import tqdm
 
-from basu.records.carla_log import Log, read_log
-from basu.records.carla_log.sources import Source, source
+from basu_carla_log import Log, read_log
+from basu_carla_log.sources import Source, source
 
 
 def read_recording(recording: Path, carla_map: Path | None) -> tuple[Log, Source]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 
-from basu.cli.later import later
-from basu.cli.recorder_log import progress_bar, read_recording
+from basu import plugins
 from basu.cli.typed_options import options_of
 from basu.errors import UserError
-from basu.extras import RERUN, require
 from basu.options.run import RunOptions
-from basu.output.viewer.server_replay import Progress, Where, play
+from basu_carla_log.recorder_log import progress_bar, read_recording
+from basu_carla_log.server_replay import Progress, Where, play
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -20,8 +20,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
     if not arguments.viewer:
         return _on_simulator(arguments)
-    require(RERUN)
-    return later("basu.cli.viewer_replay:run")(arguments)
+    viewer: Callable[[argparse.Namespace], int] = plugins.load(plugins.PARTS, "viewer_replay", "--viewer")
+    return viewer(arguments)
 
 
 def _on_simulator(arguments: argparse.Namespace) -> int:

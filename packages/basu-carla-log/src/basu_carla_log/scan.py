@@ -6,7 +6,7 @@ import struct
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from basu.records.carla_log.layouts import RECORDS, Created, DamageError, Kind, Physics, created, must_be, physics
+from basu_carla_log.layouts import RECORDS, Created, DamageError, Kind, Physics, created, must_be, physics
 
 _HEAD, _COUNT = struct.Struct("<BI"), struct.Struct("<H")
 _FRAME_START, _SECONDS = struct.Struct("<Qdd"), struct.Struct("<d")

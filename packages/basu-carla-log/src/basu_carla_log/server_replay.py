@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.records.carla_log import Log
+    from basu_carla_log import Log
 
 
 NO_ACTOR = 0  # followed by the spectator where there is no hero

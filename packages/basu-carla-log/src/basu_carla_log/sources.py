@@ -5,13 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import carla
-
 from basu.errors import UserError
 from basu.files import loads
+from basu.records.recording_files import LOG_FILE, MAP_FILE
 
-LOG_FILE, MAP_FILE = "recording.log", "map.xodr"  # in a run's folder
-RESULT_FILE, CONFIG_FILE = "result.json", "config.json"  # likewise
+RESULT_FILE, CONFIG_FILE = "result.json", "config.json"  # in a run's folder
 
 
 class Source(NamedTuple):
@@ -40,18 +38,6 @@ def source(run_or_log: Path, map_file: Path | None = None) -> Source:
     if run_or_log.name == LOG_FILE:  # its run lies around it
         return source(run_or_log.parent, map_file)
     return Source(run_or_log, map_file, None)
-
-
-def read_map(path: Path, name: str) -> carla.Map:
-    """The map in an OpenDRIVE file, as the client reads it, without a server.
-
-    Raises:
-        UserError: it cannot be read.
-    """
-    try:
-        return carla.Map(name, path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, RuntimeError) as error:
-        raise UserError(f"the map {path} cannot be read: {error}; name an OpenDRIVE file (.xodr)") from error
 
 
 class AbsentMap:

@@ -1,4 +1,4 @@
-"""``python -m basu.agents.adapters`` prints the file that the leaderboard and ScenarioRunner want as ``--agent``."""
+"""``python -m basu_leaderboard`` prints the file that the leaderboard and ScenarioRunner want as ``--agent``."""
 
 from __future__ import annotations
 

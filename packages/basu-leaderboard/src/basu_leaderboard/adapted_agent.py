@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import carla
 
-from basu.agents.adapters.foreign_class import Dialect, ForeignAgent
-from basu.agents.adapters.global_plan import Gps, global_plan
-from basu.agents.adapters.provided.carla_data_provider import CarlaDataProvider, GameTime
-from basu.agents.adapters.sensor_sets import SPEEDOMETER, translated
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.sensor_streams import as_array
+from basu_leaderboard.foreign_class import Dialect, ForeignAgent
+from basu_leaderboard.global_plan import Gps, global_plan
+from basu_leaderboard.provided.carla_data_provider import CarlaDataProvider, GameTime
+from basu_leaderboard.sensor_sets import SPEEDOMETER, translated
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

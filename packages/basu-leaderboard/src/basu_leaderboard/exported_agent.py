@@ -9,9 +9,6 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.adapters.adapted_agent import LeaderboardAgent
-from basu.agents.adapters.measurements import as_measurement
-from basu.agents.adapters.sensor_sets import theirs
 from basu.agents.autonomous_agent import parse_config
 from basu.agents.loader import load_agent
 from basu.agents.sensor_file import SensorSpec, parse_sensors, read_sensors
@@ -20,6 +17,9 @@ from basu.errors import UserError
 from basu.files import find, read_json
 from basu.routing import plan
 from basu.routing.route_file import RouteDescription, RoutePoint
+from basu_leaderboard.adapted_agent import LeaderboardAgent
+from basu_leaderboard.measurements import as_measurement
+from basu_leaderboard.sensor_sets import theirs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 ENTRY_POINT = "get_entry_point"
 BASES_OF_SCENARIO_RUNNER = frozenset(
-    {"srunner.autoagents.autonomous_agent", "basu.agents.adapters.provided.scenario_runner_agent"}
+    {"srunner.autoagents.autonomous_agent", "basu_leaderboard.provided.scenario_runner_agent"}
 )
 BASES_OF_LEADERBOARD = frozenset(
-    {"leaderboard.autoagents.autonomous_agent", "basu.agents.adapters.provided.leaderboard_agent"}
+    {"leaderboard.autoagents.autonomous_agent", "basu_leaderboard.provided.leaderboard_agent"}
 )
 CALLS: dict[str, tuple[Any, ...]] = {
     "setup": ("",),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 import numpy as np
 
-from basu.agents.adapters.provided.planned_agent import RoadOption
+from basu_leaderboard.provided.planned_agent import RoadOption
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 
-HOME = "basu.agents.adapters.provided"
+HOME = "basu_leaderboard.provided"
 PROVIDED = {
     "leaderboard.autoagents.autonomous_agent": f"{HOME}.leaderboard_agent",
     "leaderboard.utils.route_manipulation": f"{HOME}.planned_agent",

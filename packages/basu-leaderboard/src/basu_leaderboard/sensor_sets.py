@@ -6,8 +6,8 @@ import logging
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.agents.adapters.foreign_class import Dialect
 from basu.errors import UserError
+from basu_leaderboard.foreign_class import Dialect
 
 if TYPE_CHECKING:
     from basu.agents.sensor_file import SensorSpec

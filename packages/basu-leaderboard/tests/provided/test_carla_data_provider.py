@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from basu.agents.adapters.provided.carla_data_provider import CarlaDataProvider
+from basu_leaderboard.provided.carla_data_provider import CarlaDataProvider
 
 HERO: Any = SimpleNamespace(id=7, attributes={"role_name": "hero"})
 OTHER: Any = SimpleNamespace(id=8, attributes={})

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from basu.agents.adapters.provided.carla_data_provider import GameTime
+from basu_leaderboard.provided.carla_data_provider import GameTime
 
 
 @pytest.fixture(autouse=True)

@@ -6,7 +6,7 @@ import carla
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.agents.adapters.provided.planned_agent import RoadOption, downsample_route
+from basu_leaderboard.provided.planned_agent import RoadOption, downsample_route
 
 FOLLOW, LEFT = RoadOption.LANEFOLLOW, RoadOption.LEFT
 CHANGE = RoadOption.CHANGELANELEFT

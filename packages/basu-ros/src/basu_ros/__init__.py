@@ -7,6 +7,7 @@ publish.
 The import raises UserError where rosbags is not installed: every module of this package needs its types.
 """
 
-from basu.extras import ROSBAGS, require
+from basu.extras import require
+from basu_ros.extras import ROSBAGS
 
 require(ROSBAGS)

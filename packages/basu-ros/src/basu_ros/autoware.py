@@ -9,17 +9,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.ros import frames
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.frames import Pose
-from basu.ros.sensor_messages import sensor_messages, vector3
-from basu.ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
+from basu_ros import frames
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.frames import Pose
+from basu_ros.sensor_messages import sensor_messages, vector3
+from basu_ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu.ros.moment import Moment, Mount, Vehicle
-    from basu.ros.types import Types
+    from basu_ros.moment import Moment, Mount, Vehicle
+    from basu_ros.types import Types
 
 DRIVE, REVERSE = 2, 20  # autoware_vehicle_msgs/GearReport
 AUTONOMOUS = 1  # autoware_vehicle_msgs/ControlModeReport

@@ -9,17 +9,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.ros import frames
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.frames import Pose
-from basu.ros.sensor_messages import sensor_messages
-from basu.ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
-from basu.ros.types import Generation, Types
+from basu_ros import frames
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.frames import Pose
+from basu_ros.sensor_messages import sensor_messages
+from basu_ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
+from basu_ros.types import Generation, Types
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu.ros.moment import Moment, Mount, Vehicle
+    from basu_ros.moment import Moment, Mount, Vehicle
 
 Place = tuple[float, float, float, float]
 """x, y, z in m and yaw in rad, in CARLA's axes."""

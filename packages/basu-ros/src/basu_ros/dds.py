@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu.errors import UserError
-from basu.extras import CYCLONEDDS
-from basu.ros.dds_domain import domain_of_environment, joined
-from basu.ros.dds_peers import Publishers, SameType, user_data
-from basu.ros.dds_types import dds_type
-from basu.ros.topics import Topic
-from basu.ros.types import HUMBLE, KILTED, Generation, Types, types_of
+from basu_ros.dds_domain import domain_of_environment, joined
+from basu_ros.dds_peers import Publishers, SameType, user_data
+from basu_ros.dds_types import dds_type
+from basu_ros.extras import CYCLONEDDS
+from basu_ros.topics import Topic
+from basu_ros.types import HUMBLE, KILTED, Generation, Types, types_of
 
 try:
     from cyclonedds.core import (
@@ -40,7 +40,7 @@ except ImportError as error:
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.ros.topics import Message
+    from basu_ros.topics import Message
 
 DISCOVERY = Topic("ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo", is_latched=True, depth=1)
 BEFORE_IRON = ("foxy", "galactic", "humble")  # an identifier of an endpoint has 24 bytes there, 16 since

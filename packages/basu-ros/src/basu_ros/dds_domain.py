@@ -9,7 +9,7 @@ import os
 from typing import Any
 
 from basu.errors import UserError
-from basu.extras import CYCLONEDDS
+from basu_ros.extras import CYCLONEDDS
 
 try:
     from cyclonedds.core import DDSException

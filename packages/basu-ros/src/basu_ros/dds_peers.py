@@ -9,8 +9,8 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.extras import CYCLONEDDS
-from basu.ros.dds_types import dds_name
+from basu_ros.dds_types import dds_name
+from basu_ros.extras import CYCLONEDDS
 
 try:
     from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
@@ -21,8 +21,8 @@ except ImportError as error:
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.ros.topics import Topic
-    from basu.ros.types import Types
+    from basu_ros.topics import Topic
+    from basu_ros.types import Types
 
 TYPE_HASH = re.compile(rb"typehash=(RIHS01_[0-9a-f]{64});")  # in the user data of an endpoint: REP 2016, rmw since Iron
 MOST = 1000  # publishers that are looked through

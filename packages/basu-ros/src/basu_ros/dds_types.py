@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.extras import CYCLONEDDS
+from basu_ros.extras import CYCLONEDDS
 
 try:
     from cyclonedds import idl
@@ -18,7 +18,7 @@ except ImportError as error:
     raise UserError(CYCLONEDDS.missing) from error
 
 if TYPE_CHECKING:
-    from basu.ros.types import Types
+    from basu_ros.types import Types
 
 dds: Any = idl_types  # its generics are no generics to the type checker
 TEXTS = ("string", "wstring")

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.records.motion import VehicleMotion
-from basu.ros import frames
-from basu.ros.frames import Pose
+from basu_ros import frames
+from basu_ros.frames import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from basu.ros.frames import Vector
+    from basu_ros.frames import Vector
 
 
 class Motion(VehicleMotion):

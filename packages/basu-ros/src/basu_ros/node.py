@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.ros.topics import Message, Topic
-    from basu.ros.types import Types
+    from basu_ros.topics import Message, Topic
+    from basu_ros.types import Types
 
 
 class RosNode(Protocol):

@@ -16,7 +16,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
-from basu.ros.rospy_process import (
+from basu_ros.rospy_process import (
     ANNOUNCE,
     ANSWER,
     ENDED,
@@ -30,14 +30,14 @@ from basu.ros.rospy_process import (
     VERSION,
     WARNING,
 )
-from basu.ros.rospy_start import master_uri, refusal, started
-from basu.ros.types import Generation, Types, types_of
+from basu_ros.rospy_start import master_uri, refusal, started
+from basu_ros.types import Generation, Types, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import IO
 
-    from basu.ros.topics import Message, Topic
+    from basu_ros.topics import Message, Topic
 
 START_S, CLOSE_S, ANSWER_S = 30.0, 5.0, 10.0
 MD5_BYTES = 32

@@ -1,7 +1,7 @@
 """A ROS 1 node for another process: topics by rospy, frames of bytes on standard input and output.
 
 The system's Python runs this file, which may be another version than BASU's. It imports nothing of BASU. Messages are
-bytes that BASU has made, so that no message package has to be installed. ``basu.ros.ros1`` is the other side.
+bytes that BASU has made, so that no message package has to be installed. ``basu_ros.ros1`` is the other side.
 
 A frame is a kind (one byte), the number of a topic (2 bytes), a length (4 bytes) and the content, little-endian.
 Received messages begin with the MD5 sum of their type (32 bytes).

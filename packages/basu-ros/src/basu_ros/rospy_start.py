@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from basu.errors import UserError
-from basu.ros.rospy_process import REFUSED
+from basu_ros.rospy_process import REFUSED
 
 PROGRAM = Path(__file__).with_name("rospy_process.py")
 LAUNCH = f"import sys; del sys.path[0]; import runpy; runpy.run_path({str(PROGRAM)!r}, run_name='__main__')"

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.ros import frames
-from basu.ros.types import Generation
+from basu_ros import frames
+from basu_ros.types import Generation
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from basu.ros.moment import Mount
-    from basu.ros.types import Types
+    from basu_ros.moment import Mount
+    from basu_ros.types import Types
 
 Part = tuple[str, Any]  # behind the sensor's topic, and a message
 

@@ -6,16 +6,16 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
-from basu.ros import frames
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.frames import Pose
-from basu.ros.sensor_messages import sensor_messages, sensor_types
+from basu_ros import frames
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.frames import Pose
+from basu_ros.sensor_messages import sensor_messages, sensor_types
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu.ros.moment import Moment, Vehicle
-    from basu.ros.types import Types
+    from basu_ros.moment import Moment, Vehicle
+    from basu_ros.types import Types
 
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # of a part of a topic's name: design.ros2.org, topic and service names
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.ros import frames
-from basu.ros.frames import Pose
-from basu.ros.sensor_messages import quaternion, vector3
+from basu_ros import frames
+from basu_ros.frames import Pose
+from basu_ros.sensor_messages import quaternion, vector3
 
 if TYPE_CHECKING:
-    from basu.ros.moment import Actor, Control, Light, Moment, Motion, Mount, Vehicle
-    from basu.ros.types import Types
+    from basu_ros.moment import Actor, Control, Light, Moment, Motion, Mount, Vehicle
+    from basu_ros.types import Types
 
 MAP, ODOM, BASE = "map", "odom", "base_link"
 NS_PER_S = 1_000_000_000

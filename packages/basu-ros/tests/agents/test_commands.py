@@ -7,16 +7,16 @@ import pytest
 from basu.agents.builtin.driving.controllers import DriveModel
 from basu.agents.builtin.perception import Steering, VehicleFacts
 from basu.agents.builtin.scene import Body
-from basu.agents.ros.commands import (
+from basu.errors import AgentInvalidControlError
+from basu_ros.agents.commands import (
     AckermannControl,
     Wanted,
     ackermann_command,
     autoware_command,
     carla_command,
 )
-from basu.agents.ros.lockstep import is_answer
-from basu.errors import AgentInvalidControlError
-from basu.ros.types import Generation, types_of
+from basu_ros.agents.lockstep import is_answer
+from basu_ros.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 FACTS = VehicleFacts(

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from basu.agents.ros.legs import AHEAD_M, LEG_M, Legs, goals_of
 from basu.routing.planned_route import Route
+from basu_ros.agents.legs import AHEAD_M, LEG_M, Legs, goals_of
 from driving_plant import make_route
 
 RADIUS_M = 300.0

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.ros.ros2 import RosAgent
 from basu.records.history.files import read_history
+from basu_ros.agents.ros2 import RosAgent
 from rclpy_environment import rclpy_peer, rclpy_python
 from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from servers import RunningServer

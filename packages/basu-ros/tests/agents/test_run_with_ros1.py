@@ -11,9 +11,9 @@ from typing import Any, cast
 
 import pytest
 
-from basu.agents.ros.ros1 import Ros1Agent
 from basu.cli import main
 from basu.records.history.files import read_history
+from basu_ros.agents.ros1 import Ros1Agent
 from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 from servers import RunningServer

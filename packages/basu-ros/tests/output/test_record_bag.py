@@ -9,11 +9,11 @@ from rosbags.highlevel import AnyReader
 from basu.cli import main
 from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
-from basu.output.ros.record_bag import write_record
-from basu.output.ros.track_record import Shape, record_of
 from basu.records.history.files import read_history, write_history
-from basu.ros.bag_track import read_track
-from basu.ros.types import Generation
+from basu_ros.bag_track import read_track
+from basu_ros.output.record_bag import write_record
+from basu_ros.output.track_record import Shape, record_of
+from basu_ros.types import Generation
 from fakes.drives import VEHICLE, hit
 from fakes.one_road import one_road
 from fakes.rides import braked, eastward, ride

@@ -12,12 +12,12 @@ from mcap_ros2.decoder import DecoderFactory
 
 from basu.cli import main
 from basu.errors import UserError
-from basu.output.ros.record_bag import write_record
 from basu.records.history.files import read_history
-from basu.ros.bag_file import BagFile
-from basu.ros.dds import Node
-from basu.ros.topics import TF_STATIC, Message, Topic, odometry_of, path_of
-from basu.ros.types import Generation
+from basu_ros.bag_file import BagFile
+from basu_ros.dds import Node
+from basu_ros.output.record_bag import write_record
+from basu_ros.topics import TF_STATIC, Message, Topic, odometry_of, path_of
+from basu_ros.types import Generation
 from servers import RunningServer
 
 AGENT = """

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.campaigns.search.findings import MAY, SURE
 from basu.output.report.scenarios.sweep.plane import (
     HEIGHT_PX,
     LEFT_PX,
@@ -21,13 +20,14 @@ from basu.output.report.scenarios.sweep.plane import (
 from basu.output.report.scenarios.sweep.study import Axis
 from basu.output.report.scenarios.sweep.success_map import PICTURE_WIDTH_PX, mark
 from basu.output.report.templates import e, extended, number
+from basu_search.findings import MAY, SURE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from xml.etree.ElementTree import Element
 
-    from basu.campaigns.search.findings import Boundary, Drives
-    from basu.campaigns.search.space import Dimension
+    from basu.campaigns.search_space import Dimension
+    from basu_search.findings import Boundary, Drives
 
 COLUMNS, ROWS = 85, 55  # of the grid on which the surrogate is computed
 HALF = 0.5

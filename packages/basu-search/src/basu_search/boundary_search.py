@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.campaigns.search.rounds import Known, Round, round_sizes, space_filling
-from basu.campaigns.search.surrogate import SeveritySurrogate, Surrogate
+from basu_search.rounds import Known, Round, round_sizes, space_filling
+from basu_search.surrogate import SeveritySurrogate, Surrogate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.campaigns.search.part import SEARCH
-from basu.campaigns.search.proposal import guards_in, weights_of
-from basu.campaigns.search.rare_event import RareEvent, estimate
-from basu.campaigns.search.rounds import space_filling
-from basu.campaigns.search.space import Dimension
-from basu.campaigns.search.strands import rounds_in, verdict_of
-from basu.campaigns.search.surrogate import Surrogate
+from basu.campaigns.search_part import SEARCH
+from basu.campaigns.search_space import Dimension
 from basu.files import read_json
+from basu_search.proposal import guards_in, weights_of
+from basu_search.rare_event import RareEvent, estimate
+from basu_search.rounds import space_filling
+from basu_search.strands import rounds_in, verdict_of
+from basu_search.surrogate import Surrogate
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
-    from basu.campaigns.search.space import Space
+    from basu.campaigns.search_space import Space
 
 SURE, MAY = 0.82, 0.18  # probabilities of the failing side between which the boundary lies
 # Laplace's approximation is too careful: between 97.5 and 2.5 % lies most of the space. On a circle, a band and a wave

@@ -16,19 +16,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.special import logsumexp, ndtr, ndtri
-
-from basu.errors import UserError
-
-try:
-    from sklearn.cluster import KMeans
-    from threadpoolctl import ThreadpoolController
-except ImportError as error:
-    raise UserError("an estimate needs scikit-learn; install it with `pip install linden[search]`") from error
+from sklearn.cluster import KMeans
+from threadpoolctl import ThreadpoolController
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.campaigns.search.rounds import Round
+    from basu_search.rounds import Round
 
 WIDE = 2.0  # standard deviation of the wide guard
 GUARDS = 2  # parts at the beginning of a mixture that know nothing of failures

@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.special import gammaincinv, ndtri
 
-from basu.campaigns.search.proposal import drawn_from, guarded, mixture_of, parts_of, weights_of
-from basu.campaigns.search.rounds import Known, Round, round_sizes
+from basu_search.proposal import drawn_from, guarded, mixture_of, parts_of, weights_of
+from basu_search.rounds import Known, Round, round_sizes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.campaigns.search.proposal import Mixture
     from basu.campaigns.settings import Estimate
+    from basu_search.proposal import Mixture
 
 LOOK_AROUND = 0.4  # share of the wide guard while the mixture learns
 LOOK_ON = 0.1  # and of the drives of the estimate

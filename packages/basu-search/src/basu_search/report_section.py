@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.campaigns.search.boundary_map import boundary_map
-from basu.campaigns.search.findings import boundary_in, rare_in, searches_in
 from basu.output.report.templates import render
+from basu_search.boundary_map import boundary_map
+from basu_search.findings import boundary_in, rare_in, searches_in
 
 if TYPE_CHECKING:
     from pathlib import Path

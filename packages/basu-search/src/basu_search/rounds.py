@@ -5,13 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
-
-from basu.errors import UserError
-
-try:
-    from scipy.stats import qmc
-except ImportError as error:
-    raise UserError("a search needs scipy and scikit-learn; install them with `pip install linden[search]`") from error
+from scipy.stats import qmc
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

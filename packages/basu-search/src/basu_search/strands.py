@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.campaigns.search.boundary_search import BoundarySearch
-from basu.campaigns.search.part import SEARCH, SearchPlace
-from basu.campaigns.search.rare_event import CrossEntropy
-from basu.campaigns.search.rounds import Known, Round
-from basu.campaigns.search.space import values_at
+from basu.campaigns.search_part import SEARCH, SearchPlace
+from basu.campaigns.search_space import values_at
 from basu.errors import UserError
 from basu.files import read_json
 from basu.output.report.documents import write_json
+from basu_search.boundary_search import BoundarySearch
+from basu_search.rare_event import CrossEntropy
+from basu_search.rounds import Known, Round
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from basu.campaigns.plan import CampaignPlan
-    from basu.campaigns.search.part import SearchPart, StrandKey
-    from basu.campaigns.search.rounds import Proposer
+    from basu.campaigns.search_part import SearchPart, StrandKey
+    from basu_search.rounds import Proposer
 
 OWN_FAULTS = frozenset({"simulator", "setup", "benchmark"})  # say nothing of the agent
 

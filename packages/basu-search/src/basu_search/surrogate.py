@@ -11,17 +11,11 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from basu.errors import UserError
-
-try:
-    from scipy.special import ndtr
-    from sklearn.exceptions import ConvergenceWarning
-    from sklearn.gaussian_process import GaussianProcessClassifier, GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
-    from threadpoolctl import ThreadpoolController
-except ImportError as error:
-    raise UserError("a search needs scipy and scikit-learn; install them with `pip install linden[search]`") from error
+from scipy.special import ndtr
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.gaussian_process import GaussianProcessClassifier, GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
+from threadpoolctl import ThreadpoolController
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,20 +7,20 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.errors import SimulatorError
-from basu.sumo.display import Display
-from basu.sumo.lights import Lights
-from basu.sumo.mirrors import ROLE, Mirrors
-from basu.sumo.models import Models
-from basu.sumo.road_users import People, RoadUser, Vehicles
-from basu.sumo.trip_ends import TripEnds
-from basu.sumo.trip_starts import TripStarts
+from basu_sumo.display import Display
+from basu_sumo.lights import Lights
+from basu_sumo.mirrors import ROLE, Mirrors
+from basu_sumo.models import Models
+from basu_sumo.road_users import People, RoadUser, Vehicles
+from basu_sumo.trip_ends import TripEnds
+from basu_sumo.trip_starts import TripStarts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
 
     import carla
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 __all__ = ["ROLE", "Bridge", "Counts"]
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from basu.episode.world import ticked_by_us
 from basu.errors import SimulatorError, UserError
 from basu.simulator import connect, linden_command
-from basu.sumo.bridge import Bridge
-from basu.sumo.link import Link, connected, in_process
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.scenario import Wanted, config_in, made_of
+from basu_sumo.bridge import Bridge
+from basu_sumo.link import Link, connected, in_process
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.scenario import Wanted, config_in, made_of
 
 if TYPE_CHECKING:
     from collections.abc import Generator

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
-from basu.sumo.mirrors import ROLE
+from basu_sumo.mirrors import ROLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from basu.sumo.frames import Pose
-    from basu.sumo.road_users import Look, RoadUser
+    from basu_sumo.frames import Pose
+    from basu_sumo.road_users import Look, RoadUser
 
 RADIUS_SLACK_M = 10.0  # beyond the radius: a road user at its edge does not come and go
 WALKER_DROP_M = 1.0  # a walker's place is its middle, some 0.9 m above its feet: simulator and blueprints differ

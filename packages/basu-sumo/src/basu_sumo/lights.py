@@ -10,7 +10,7 @@ import carla
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 LETTERS = {carla.TrafficLightState.Red: "r", carla.TrafficLightState.Yellow: "y", carla.TrafficLightState.Green: "G"}
 GREEN, YELLOW = "Ggs", "yYu"

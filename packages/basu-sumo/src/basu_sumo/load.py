@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.records.history.sumo import Second
-from basu.sumo.road_users import MIRROR
+from basu_sumo.road_users import MIRROR
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 HALTED_MPS = 0.1  # SUMO's own limit of a halt: microsim/MSGlobals, SUMO_const_haltingSpeed
 

@@ -9,17 +9,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.sumo.frames import to_sumo
-from basu.sumo.models import CLASSES
-from basu.sumo.road_users import MIRROR, for_people
+from basu_sumo.frames import to_sumo
+from basu_sumo.models import CLASSES
+from basu_sumo.road_users import MIRROR, for_people
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
     import carla
 
-    from basu.sumo.link import Link
-    from basu.sumo.models import Models
+    from basu_sumo.link import Link
+    from basu_sumo.models import Models
 
 ROLE = "sumo"  # role_name of what a bridge has spawned: what is left over is found by it
 EXACT = 2  # keepRoute of moveToXY: the place is taken as it is, on a road or not (TraCI protocol)

@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.records.history.sumo import Passenger
-from basu.sumo.road_users import STAGE_DRIVING
+from basu_sumo.road_users import STAGE_DRIVING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 LINE = "shuttle"  # of a person's ride in the demand: <ride lines="shuttle">
 CAPACITY = 12  # passengers of an EasyMile EZ10, seated and standing: the manufacturer's figure

@@ -6,12 +6,12 @@ import random
 from typing import TYPE_CHECKING
 
 from basu.errors import UserError
-from basu.sumo.trip_ends import Streets, is_in_sight
+from basu_sumo.trip_ends import Streets, is_in_sight
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 MIX = "traffic"  # the distribution of types in the folders of `linden map sumo`
 FALLBACK = "DEFAULT_VEHTYPE"

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
-from basu.sumo.frames import Pose, from_sumo
-from basu.sumo.sideways import Sideways
+from basu_sumo.frames import Pose, from_sumo
+from basu_sumo.sideways import Sideways
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from basu.sumo.link import Link
-    from basu.sumo.models import Models
+    from basu_sumo.link import Link
+    from basu_sumo.models import Models
 
 MIRROR = "carla"  # begins the ids of CARLA's actors in SUMO
 

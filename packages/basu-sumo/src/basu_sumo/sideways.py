@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from basu.sumo.frames import Pose
+from basu_sumo.frames import Pose
 
 JUMP_M = 0.3  # aside in one step: less is driven along a curve
 FARTHEST_M = 6.0  # aside in one step: more is no change of lanes or parking, but another place

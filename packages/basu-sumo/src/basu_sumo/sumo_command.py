@@ -10,7 +10,7 @@ from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.options.run import RunOptions
 from basu.options.sumo import SUMO_OFF
-from basu.running.cosimulation import cosimulate
+from basu_sumo.cosimulation import cosimulate
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.errors import SimulatorError, UserError
-from basu.managers.base_manager import BaseManager
+from basu.managers.base_manager import CoSimulation
 from basu.metrics.path_following import serves
 from basu.records.history.sumo import SumoRecord
-from basu.sumo.bridge import Bridge
-from basu.sumo.link import Link, connected, in_process
-from basu.sumo.load import Load
-from basu.sumo.outputs import Outputs
-from basu.sumo.passengers import Passengers
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.road_users import MIRROR
-from basu.sumo.scenario import DEFAULT_HOUR, RouteStop, Wanted, config_in, made_of, named_folder
+from basu_sumo.bridge import Bridge
+from basu_sumo.link import Link, connected, in_process
+from basu_sumo.load import Load
+from basu_sumo.outputs import Outputs
+from basu_sumo.passengers import Passengers
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.road_users import MIRROR
+from basu_sumo.scenario import DEFAULT_HOUR, RouteStop, Wanted, config_in, made_of, named_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +30,7 @@ PLACES = 20  # of the route, that a network is tried on
 S_PER_HOUR = 3600.0
 
 
-class SumoManager(BaseManager):
+class SumoManager(CoSimulation):
     """SUMO beside the world. ``count`` says how many of its vehicles and people there were."""
 
     def __init__(self, sumo: Sumo, linden: Sequence[str], routes: RoutesManager) -> None:

@@ -13,8 +13,8 @@ from basu.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from basu.sumo.link import Link
-    from basu.sumo.road_users import RoadUser
+    from basu_sumo.link import Link
+    from basu_sumo.road_users import RoadUser
 
 SIGHT_M = 150.0  # no trip ends so near to a vehicle of the simulator: the range of the longest sensors of road vehicles
 LAST_EDGES = 2  # of a route: a vehicle on one of them is near its end

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.sumo.road_users import MIRROR
-from basu.sumo.trip_ends import LOOK_STEPS, is_in_sight
+from basu_sumo.road_users import MIRROR
+from basu_sumo.trip_ends import LOOK_STEPS, is_in_sight
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
 
-    from basu.sumo.link import Link
-    from basu.sumo.trip_ends import Streets
+    from basu_sumo.link import Link
+    from basu_sumo.trip_ends import Streets
 
 PARKING_AREA = 64  # flag of a stop, TraCI protocol
 SLACK_M = 10.0  # beyond sight: a viewer drives on until the vehicle is on the road

@@ -5,20 +5,23 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from basu.cli.recorder_log import progress_bar, read_recording
+from basu.extras import require
 from basu.metrics.scoring import Scoring, scoring_of_run
 from basu.output.report.documents import CONFIG_FILE
-from basu.output.viewer.log_replay import show_log
-from basu.output.viewer.record_replay import show_run
-from basu.output.viewer.stream import has_screen
-from basu.records.carla_log.sources import read_map
+from basu.records.recording_files import read_map
 from basu.settings.resolve import resolve
+from basu_carla_log.recorder_log import progress_bar, read_recording
+from basu_window.extras import RERUN
+from basu_window.viewer.log_replay import show_log
+from basu_window.viewer.record_replay import show_run
+from basu_window.viewer.stream import has_screen
 
 RRD_FILE = "replay.rrd"
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Show a run's folder or a recorder file."""
+    require(RERUN)
     recording: Path = arguments.recording
     return _run_in_viewer(arguments, recording) if recording.is_dir() else _log_in_viewer(arguments, recording)
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.manual.devices import HELD_BY, STRUCK_BY
-from basu.output.hud.panel import KEYS
+from basu_window.hud.panel import KEYS
+from basu_window.manual.devices import HELD_BY, STRUCK_BY
 
 PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "hud.md"
 

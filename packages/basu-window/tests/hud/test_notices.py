@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from basu.metrics.score import infractions
-from basu.output.hud.notices import FADE_S, LINES, Judge, Judgement, Notices
+from basu_window.hud.notices import FADE_S, LINES, Judge, Judgement, Notices
 from fakes.drives import at, driven, hit
 
 

@@ -5,10 +5,10 @@ from typing import Any
 import carla
 
 from basu.metrics.score import Scores
-from basu.output.hud.canvas import RED
-from basu.output.hud.notices import Judgement
-from basu.output.hud.panel import Panel, driver_word
-from basu.output.hud.readings import Fix, Inertial, Rates, Readings, Setting
+from basu_window.hud.canvas import RED
+from basu_window.hud.notices import Judgement
+from basu_window.hud.panel import Panel, driver_word
+from basu_window.hud.readings import Fix, Inertial, Rates, Readings, Setting
 
 
 class Paper:

@@ -7,13 +7,13 @@ from typing import Any
 import pygame
 import pytest
 
-from basu.agents.manual.inputs import Held, Input
-from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options.run import RunOptions
-from basu.output.hud.person_input import KeysManager, person_for
-from basu.output.hud.sensor_view import ChaseCamera
+from basu_window.hud.person_input import KeysManager, person_for
+from basu_window.hud.sensor_view import ChaseCamera
+from basu_window.manual.inputs import Held, Input
+from basu_window.manual.session import Played, RecordingSource, Session, Setting, read_session
 
 SESSION = "data/human_session.json"
 

@@ -8,9 +8,9 @@ import carla
 import pytest
 
 from basu.managers.base_manager import Ego
-from basu.output.hud.hud import Meter
-from basu.output.hud.panel import clock, signed
-from basu.output.hud.readings import (
+from basu_window.hud.hud import Meter
+from basu_window.hud.panel import clock, signed
+from basu_window.hud.readings import (
     GRAVITY_MPS2,
     compass_point,
     felt,

@@ -8,8 +8,8 @@ import numpy as np
 import pygame
 import pytest
 
-from basu.output.hud.canvas import Canvas
-from basu.output.hud.sensor_view import SensorView, _draw_points, picture, readings, tag_colours
+from basu_window.hud.canvas import Canvas
+from basu_window.hud.sensor_view import SensorView, _draw_points, picture, readings, tag_colours
 
 TYPES = {"FRONT": "sensor.camera.rgb", "TOP": "sensor.lidar.ray_cast", "GPS": "sensor.other.gnss"}
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from basu.output.hud.top_down import View, lanes_of
+from basu_window.hud.top_down import View, lanes_of
 
 
 def lane(yaws_deg: Sequence[float], lane_id: int = -1, *, junction: bool = False) -> list[Any]:

@@ -7,9 +7,9 @@ from pathlib import Path
 import pygame
 import pytest
 
-from basu.agents.manual.devices import Devices, check_display
-from basu.agents.manual.inputs import Axes, Held, Input, Strike
 from basu.errors import UserError
+from basu_window.manual.devices import Devices, check_display
+from basu_window.manual.inputs import Axes, Held, Input, Strike
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Tests of ``basu.agents.manual.inputs``."""
+"""Tests of ``basu_window.manual.inputs``."""
 
 import itertools
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.agents.manual.inputs import MOST_STEER, Axes, Held, Input, PedalsAndWheel, Person, Strike, after
+from basu_window.manual.inputs import MOST_STEER, Axes, Held, Input, PedalsAndWheel, Person, Strike, after
 
 DT_S = 0.05
 REST = PedalsAndWheel()

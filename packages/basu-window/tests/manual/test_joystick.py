@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.manual.inputs import Axes, Strike
-from basu.agents.manual.joystick import CARLAS_FILE, axes, layout_for
 from basu.errors import UserError
+from basu_window.manual.inputs import Axes, Strike
+from basu_window.manual.joystick import CARLAS_FILE, axes, layout_for
 
 CARLAS = """[G29 Racing Wheel]
 steering_wheel = 0

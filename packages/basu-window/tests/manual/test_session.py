@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
-from basu.agents.manual.session import RecordingSource, Session, Setting, read_session, write_session
 from basu.errors import UserError
+from basu_window.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
+from basu_window.manual.session import RecordingSource, Session, Setting, read_session, write_session
 
 SETTING = Setting(town="Linden", route="1", vehicle="vehicle.tesla.model3", step_s=0.05)
 HUNDREDTHS = st.integers(0, 100).map(lambda n: n / 100)

@@ -6,7 +6,7 @@ import carla
 import numpy as np
 import pytest
 
-from basu.output.viewer.layout import Pose, about_the_vertical, shown, turned
+from basu_window.viewer.layout import Pose, about_the_vertical, shown, turned
 
 
 def test_south_becomes_negative_north() -> None:

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.output.viewer.server_replay import Progress, Where, play
-from basu.records.carla_log import read_log
-from basu.records.carla_log.metrics_log import MetricsLog
-from basu.records.carla_log.sources import MAP_FILE, read_map
 from basu.records.history.files import read_history
+from basu.records.recording_files import MAP_FILE, read_map
+from basu_carla_log import read_log
+from basu_carla_log.metrics_log import MetricsLog
+from basu_carla_log.server_replay import Progress, Where, play
 from fakes.rerun_files import read_rrd
 from servers import RunningServer, running_server
 

@@ -16,7 +16,7 @@ from fakes import recordings as made
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route
 from fakes.rerun_files import read_rrd, timelines
 
-LINDEN = Path(__file__).parents[4] / "src" / "linden" / "data" / "Linden.xodr"
+LINDEN = Path(__file__).parents[4] / "packages" / "linden" / "src" / "linden" / "data" / "Linden.xodr"
 
 
 @pytest.fixture(autouse=True)
@@ -126,7 +126,7 @@ def test_a_window_that_does_not_open_is_reported_and_the_file_is_there(
     false = shutil.which("false")
     assert false is not None
     monkeypatch.setenv("DISPLAY", ":99")
-    monkeypatch.setattr("basu.output.viewer.stream.sys.executable", false)  # what Rerun's program is started with
+    monkeypatch.setattr("basu_window.viewer.stream.sys.executable", false)  # what Rerun's program is started with
     found = read_rrd(shown_again(tmp_path))
     assert len(found["/world/ego"]) == len(drive().frames)
     assert "(kept; Rerun's window did not open, `rerun` by itself says why)" in capsys.readouterr().out

@@ -15,11 +15,6 @@ class Extra(NamedTuple):
     missing: str
 
 
-CYCLONEDDS = Extra("cyclonedds", 'ROS 2 needs the package cyclonedds; install it with `pip install "linden[ros2]"`')
-RERUN = Extra("rerun", "--viewer needs Rerun: install it with `pip install 'linden[viewer]'`, or run without --viewer")
-ROSBAGS = Extra("rosbags", 'ROS messages need the package rosbags; install it with `pip install "linden[rosbag]"`')
-
-
 def require(extra: Extra) -> None:
     """Check that the package of an extra is installed; it is not imported.
 

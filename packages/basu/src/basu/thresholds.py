@@ -1,7 +1,7 @@
 """Speeds at which BASU takes a road user for at rest, standing or moving, all in m/s.
 
 The judgement uses the first two, BASU's own drivers and the actors of its cases the others too. The leaderboard's
-constants stand in `basu.metrics.leaderboard`, and SUMO's in `basu.sumo.load`, because other programs define them.
+constants stand in `basu.metrics.leaderboard`, and SUMO's in `basu_sumo.load`, because other programs define them.
 """
 
 AT_REST_MPS = 0.1

@@ -12,7 +12,7 @@ from basu.agents.sight import Knowledge
 from basu.errors import UserError
 from basu.records.partners import Partner
 
-SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
+SAMPLE = Path(__file__).parents[4] / "examples" / "forward_agent.py"
 COMPLETE = """
 class {name}(AutonomousAgent):
     def setup(self): pass

@@ -63,7 +63,7 @@ def test_other_fields_are_attributes_in_the_spelling_of_blueprints(tmp_path: Pat
     ],
 )
 def test_the_sets_that_come_with_basu_can_be_read(name: str, ids: list[str]) -> None:
-    path = Path(__file__).parents[3] / "src" / "basu" / "config" / name
+    path = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "config" / name
     assert [spec.id for spec in read_sensors(path)] == ids
 
 

@@ -15,7 +15,7 @@ AGENT = """
 import json
 import numpy as np
 from types import SimpleNamespace
-from basu.agents.adapters.adapted_agent import LeaderboardAgent
+from basu_leaderboard.adapted_agent import LeaderboardAgent
 
 KINDS = {
     "sensor.camera.rgb": {"width": 32, "height": 24},

@@ -100,7 +100,7 @@ def test_a_mistake_is_one_sentence(campaign: Write, before: str, after: str, sen
 
 
 def test_a_file_of_scenarios_is_found_beside_the_campaign_and_workers_open_it(campaign: Write, tmp_path: Path) -> None:
-    example = Path(__file__).parents[3] / "examples" / "scenarios" / "bin_lorry.py"
+    example = Path(__file__).parents[4] / "examples" / "scenarios" / "bin_lorry.py"
     for suffix in (".py", ".xml"):
         shutil.copy(example.with_suffix(suffix), tmp_path / f"lorry{suffix}")
     usual = 'cases = ["pedestrian_crossing_1"]\nsweep = 10\nvary = ["ahead", "speed"]'

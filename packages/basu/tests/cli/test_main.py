@@ -10,7 +10,7 @@ from basu.records.history import LaneInvasion
 from basu.records.history.files import write_history
 from fakes.drives import at, driven, hit
 
-SAMPLE = str(Path(__file__).parents[3] / "examples" / "forward_agent.py")
+SAMPLE = str(Path(__file__).parents[4] / "examples" / "forward_agent.py")
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:

@@ -39,7 +39,7 @@ from servers import RunningServer, running_server
 
 TOWN = one_road()
 WAY = way_along(TOWN)
-PACKAGED = Path(__file__).parents[3] / "src" / "basu" / "routes" / "linden_scenarios.xml"
+PACKAGED = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_scenarios.xml"
 
 
 class Quiet(Scenario):

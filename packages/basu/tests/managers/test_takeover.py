@@ -9,10 +9,10 @@ import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
-from basu.agents.manual.inputs import Held, Input, Person, Strike
-from basu.agents.manual.session import Played, Session, Setting
 from basu.errors import AgentCrashedError
 from basu.managers.agents_manager import AgentsManager
+from basu_window.manual.inputs import Held, Input, Person, Strike
+from basu_window.manual.session import Played, Session, Setting
 
 P = Input(strikes=(Strike.AUTOPILOT,))
 SETTING = Setting(town="Linden", route="1", vehicle="vehicle.tesla.model3", step_s=0.05)

@@ -22,7 +22,7 @@ from fakes.drives import at, driven, ramp
 from fakes.results import META
 from fakes.run_records import record
 
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "metrics.md"
+PAGE = Path(__file__).parents[4] / "docs" / "reference" / "metrics.md"
 DONE = Outcome(Status.COMPLETED, "arrived")
 
 

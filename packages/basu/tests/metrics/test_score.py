@@ -173,7 +173,7 @@ def test_what_is_no_scoring_is_refused_with_a_sentence(document: object, sentenc
 
 
 def test_the_file_in_the_manual_is_one() -> None:
-    text = (Path(__file__).parents[3] / "docs" / "reference" / "metrics.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[4] / "docs" / "reference" / "metrics.md").read_text(encoding="utf-8")
     found = scoring_in(json.loads(text.split("```json")[1].split("```")[0]), "the manual")
     assert found.penalties[Infraction.RED_LIGHT] == 1.0
     assert found.path_following_weight == pytest.approx(0.3)

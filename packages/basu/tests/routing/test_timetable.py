@@ -13,7 +13,7 @@ from basu.routing.route_file import read_routes
 from basu.routing.timetable import read_timetable, timetable_from_json, timetable_to_json
 from fakes.drives import straight_route
 
-LEAP = Path(__file__).parents[3] / "src" / "basu" / "routes" / "linden_leap.timetable.json"
+LEAP = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_leap.timetable.json"
 STOPS = ("S1", "S2N", "S3E", "S4", "S3W", "S2S")
 
 

@@ -18,7 +18,7 @@ from basu.records.history.files import read_history
 from cheating_agent import BENCHMARK
 from servers import RunningServer, running_server
 
-SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
+SAMPLE = Path(__file__).parents[4] / "examples" / "forward_agent.py"
 AGENT = """
 import ctypes, os, signal, sys, time
 

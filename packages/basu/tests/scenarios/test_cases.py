@@ -266,7 +266,7 @@ def test_all_is_bounded_by_what_is_packaged(monkeypatch: pytest.MonkeyPatch, tmp
     ],
 )
 def test_the_file_that_scenario_runner_plays_is_read_as_it_is(identity: str, type_name: str) -> None:
-    theirs = Path(__file__).parents[3] / "examples" / "scenario_runner" / "linden.xml"
+    theirs = Path(__file__).parents[4] / "examples" / "scenario_runner" / "linden.xml"
     (playable,) = cases_of(identity, [theirs])
     assert playable.scenario.__name__ == type_name
     assert playable.case.ego.model == "vehicle.lincoln.mkz_2017"

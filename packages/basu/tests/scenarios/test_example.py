@@ -8,7 +8,7 @@ from basu.scenarios.cases import cases_of
 from basu.scenarios.playable import Playable
 from basu.testing import Driver, Rehearsal, careful, offline_place, rehearse, steady
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
 
 

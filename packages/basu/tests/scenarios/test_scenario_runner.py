@@ -27,7 +27,7 @@ from basu.routing import plan
 from basu.scenarios.cases import by_id, cases_of
 from servers import RunningServer
 
-PROJECT = Path(__file__).parents[3]
+PROJECT = Path(__file__).parents[4]
 EXAMPLES = PROJECT / "examples" / "scenario_runner"
 SPOTS = EXAMPLES / "linden.xml"
 OWN_CLASSES, OWN_CASES = EXAMPLES / "linden_scenarios.py", EXAMPLES / "linden_scenarios.xml"
@@ -47,7 +47,7 @@ PASSED_BY_THE_AUTOPILOT = (
 
 @pytest.fixture(scope="module")
 def town() -> carla.Map:
-    text = (PROJECT / "src" / "linden" / "data" / "Linden.xodr").read_text(encoding="utf-8")
+    text = (PROJECT / "packages" / "linden" / "src" / "linden" / "data" / "Linden.xodr").read_text(encoding="utf-8")
     return carla.Map("Linden", text)
 
 

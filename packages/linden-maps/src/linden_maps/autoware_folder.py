@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.bounds import STATED_ERROR_M
-from linden.authoring.lanelet2.model import LaneletMap
-from linden.authoring.lanelet2.projection import projection_of
-from linden.authoring.pointcloud.pcd_reading import clouds_of
 from linden.errors import UserError
+from linden_maps.lanelet2.bounds import STATED_ERROR_M
+from linden_maps.lanelet2.model import LaneletMap
+from linden_maps.lanelet2.projection import projection_of
+from linden_maps.pointcloud.pcd_reading import clouds_of
 
 LANELET2, PROJECTOR = "lanelet2_map.osm", "map_projector_info.yaml"
 POINT_CLOUD, METADATA = "pointcloud_map.pcd", "pointcloud_map_metadata.yaml"

@@ -3,14 +3,14 @@ import math
 import numpy as np
 import pytest
 
-from linden.authoring.aisan.convert import convert
-from linden.authoring.aisan.points import packed
-from linden.authoring.aisan.reading import complaints, heading_errors, read_folder
-from linden.authoring.aisan.tables import COLUMNS, STRAIGHT_R
-from linden.authoring.lanelet2.convert import convert as lanelets_of
-from linden.authoring.lanelet2.osm import osm_bytes, read_osm
-from linden.authoring.output import write_folder
 from linden.maps.opendrive.parse import parse
+from linden_maps.aisan.convert import convert
+from linden_maps.aisan.points import packed
+from linden_maps.aisan.reading import complaints, heading_errors, read_folder
+from linden_maps.aisan.tables import COLUMNS, STRAIGHT_R
+from linden_maps.lanelet2.convert import convert as lanelets_of
+from linden_maps.lanelet2.osm import osm_bytes, read_osm
+from linden_maps.output import write_folder
 from opendrive_texts import SIGNS_AND_LIGHTS
 from tracing import untraced_here
 from vector_map_town import two_roads

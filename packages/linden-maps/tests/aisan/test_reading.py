@@ -1,10 +1,10 @@
 import pytest
 
-from linden.authoring.aisan.convert import convert
-from linden.authoring.aisan.reading import complaints, read_folder
-from linden.authoring.lanelet2.convert import convert as lanelets_of
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
+from linden_maps.aisan.convert import convert
+from linden_maps.aisan.reading import complaints, read_folder
+from linden_maps.lanelet2.convert import convert as lanelets_of
 from vector_map_town import two_roads
 
 

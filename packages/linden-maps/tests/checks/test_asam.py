@@ -9,10 +9,10 @@ import pytest
 
 from fakes import asam, osm_forks
 from fakes.osm_quarter import quarter
-from linden.authoring.openstreetmap.convert import convert
-from linden.authoring.streets.build import assembled, build
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.writing import text
+from linden_maps.openstreetmap.convert import convert
+from linden_maps.streets.build import assembled, build
+from linden_maps.streets.geojson import read
+from linden_maps.streets.writing import text
 
 EXAMPLES = Path(__file__).parents[4] / "examples" / "maps"
 

@@ -5,8 +5,8 @@ from importlib import resources
 
 import pytest
 
-from linden.authoring.checks.check import Finding, Severity, check
 from linden.maps.opendrive.parse import parse
+from linden_maps.checks.check import Finding, Severity, check
 from opendrive_texts import follows, lane, line, opendrive, road, section, signal, street_through_junction, touches
 
 CROSSWALK = (

@@ -8,7 +8,7 @@ import pytest
 from fakes.osm_quarter import Drawing
 from linden.cli import main
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture

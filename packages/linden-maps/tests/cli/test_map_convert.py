@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from linden.authoring import output
 from linden.cli import main
+from linden_maps import output
 from vector_map_town import document, lane, road, two_roads
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fakes.pcd_files import pcd
-from linden.authoring.pointcloud.pcd_reading import clouds_of
 from linden.cli import main
 from linden.protocol.values.enums import SemanticTag
+from linden_maps.pointcloud.pcd_reading import clouds_of
 from opendrive_texts import lane, line, opendrive, road, section, street_through_junction
 
 QUICK = ["--every", "20", "--columns", "300", "--channels", "16", "--range", "50"]

@@ -4,10 +4,10 @@ import re
 
 from lxml import etree
 
-from linden.authoring.drawing.svg import svg
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.parse import parse
 from linden.maps.opendrive.spawn_points import spawn_points
+from linden_maps.drawing.svg import svg
 from opendrive_texts import signal, street_through_junction
 
 STOP_LINE = (

@@ -5,13 +5,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.bus_stops import LENGTH_M, Stop, shuttle_stops
-from linden.authoring.lanelet2.convert import Wanted, convert
-from linden.authoring.lanelet2.model import bounds_of, without_lanelets
-from linden.authoring.lanelet2.osm import osm_bytes
-from linden.authoring.lanelet2.overlap import overlap_share
-from linden.authoring.lanelet2.second_reader import routes_of
 from linden.maps.opendrive.parse import parse
+from linden_maps.lanelet2.bus_stops import LENGTH_M, Stop, shuttle_stops
+from linden_maps.lanelet2.convert import Wanted, convert
+from linden_maps.lanelet2.model import bounds_of, without_lanelets
+from linden_maps.lanelet2.osm import osm_bytes
+from linden_maps.lanelet2.overlap import overlap_share
+from linden_maps.lanelet2.second_reader import routes_of
 from vector_map_town import document, lane, road
 
 

@@ -6,10 +6,10 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.claims import MET_SHARE, complete_claims
-from linden.authoring.lanelet2.model import bounds_of
-from linden.authoring.lanelet2.movements import Movement
-from linden.authoring.lanelet2.overlap import overlap_share
+from linden_maps.lanelet2.claims import MET_SHARE, complete_claims
+from linden_maps.lanelet2.model import bounds_of
+from linden_maps.lanelet2.movements import Movement
+from linden_maps.lanelet2.overlap import overlap_share
 
 WEST_EAST, SOUTH_NORTH = ((-10.0, 0.0), (10.0, 0.0)), ((0.0, -10.0), (0.0, 10.0))
 

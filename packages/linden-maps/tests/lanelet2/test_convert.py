@@ -3,17 +3,17 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.areas import inside
-from linden.authoring.lanelet2.bounds import TOLERANCE_M
-from linden.authoring.lanelet2.checking import compare, reach, worst_error_m
-from linden.authoring.lanelet2.convert import convert
-from linden.authoring.lanelet2.model import bounds_of
-from linden.authoring.lanelet2.osm import osm_bytes
-from linden.authoring.lanelet2.second_reader import routes_of
-from linden.authoring.lanelet2.shared import NEAR_M
-from linden.authoring.lanelet2.stretches import intersections
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
+from linden_maps.lanelet2.areas import inside
+from linden_maps.lanelet2.bounds import TOLERANCE_M
+from linden_maps.lanelet2.checking import compare, reach, worst_error_m
+from linden_maps.lanelet2.convert import convert
+from linden_maps.lanelet2.model import bounds_of
+from linden_maps.lanelet2.osm import osm_bytes
+from linden_maps.lanelet2.second_reader import routes_of
+from linden_maps.lanelet2.shared import NEAR_M
+from linden_maps.lanelet2.stretches import intersections
 from opendrive_texts import SIGNS_AND_LIGHTS
 from vector_map_town import document, lane, road, two_roads
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.convert import convert
-from linden.authoring.lanelet2.osm import osm_bytes, projector_info, read_osm
-from linden.authoring.lanelet2.projection import Projection, projection_of
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
+from linden_maps.lanelet2.convert import convert
+from linden_maps.lanelet2.osm import osm_bytes, projector_info, read_osm
+from linden_maps.lanelet2.projection import Projection, projection_of
 from naive import transverse_mercator
 from vector_map_town import GEO, two_roads
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.overlap import area_m2, overlap_m2, overlap_share
+from linden_maps.lanelet2.overlap import area_m2, overlap_m2, overlap_share
 
 SQUARE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)])
 

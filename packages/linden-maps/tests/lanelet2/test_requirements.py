@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from shapely import LineString, Polygon
 
-from linden.authoring.lanelet2.convert import Converted, convert
-from linden.authoring.lanelet2.model import LaneletMap, bounds_of
-from linden.authoring.lanelet2.shared import NEAR_M
 from linden.maps.opendrive.parse import parse
+from linden_maps.lanelet2.convert import Converted, convert
+from linden_maps.lanelet2.model import LaneletMap, bounds_of
+from linden_maps.lanelet2.shared import NEAR_M
 from vector_map_town import document, lane, road
 
 C_INT = 2**31

@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from linden.authoring.lanelet2.shared import NEAR_M, one_line
-from linden.authoring.lanelet2.stretches import Network, Piece, Side, Stretch
+from linden_maps.lanelet2.shared import NEAR_M, one_line
+from linden_maps.lanelet2.stretches import Network, Piece, Side, Stretch
 
 BOW = np.linspace(0.0, np.pi, 40)
 

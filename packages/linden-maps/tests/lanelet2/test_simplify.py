@@ -1,6 +1,6 @@
 import numpy as np
 
-from linden.authoring.lanelet2.simplify import kept_points
+from linden_maps.lanelet2.simplify import kept_points
 
 
 def _away(points, line):

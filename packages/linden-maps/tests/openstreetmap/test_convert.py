@@ -11,16 +11,16 @@ import sumo
 import sumolib
 
 from fakes.osm_quarter import Drawing, quarter
-from linden.authoring.checks.check import Severity, check
-from linden.authoring.openstreetmap.convert import Imported, convert
-from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.writing import text
 from linden.errors import UserError
 from linden.maps.facts import derive
 from linden.maps.opendrive.model import OpenDrive, Road
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.check import Severity, check
+from linden_maps.openstreetmap.convert import Imported, convert
+from linden_maps.streets.build import Built, assembled
+from linden_maps.streets.geojson import read
+from linden_maps.streets.writing import text
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,8 @@
 
 import pytest
 
-from linden.authoring.openstreetmap.extract import read_extract
 from linden.errors import UserError
+from linden_maps.openstreetmap.extract import read_extract
 
 
 def osm(*lines: str) -> bytes:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from linden.authoring.openstreetmap.tags import (
+from linden_maps.openstreetmap.tags import (
     TAGGED,
     carriageway,
     cycle_lanes,

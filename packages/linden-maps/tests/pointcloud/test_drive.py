@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from fakes.solids import box, described, floor, instances, look_at, seen_of
-from linden.authoring.pointcloud.cloud import Cloud, in_map
-from linden.authoring.pointcloud.drive import Lidar, Place, drive
 from linden.scenery.mesh import Mesh, join
 from linden.sensors.casting.choose import caster_of
 from linden.sensors.devices.lidar import SemanticLidar
+from linden_maps.pointcloud.cloud import Cloud, in_map
+from linden_maps.pointcloud.drive import Lidar, Place, drive
 
 FEW = Lidar(channels=16, upper_fov_deg=5.0, lower_fov_deg=-40.0, range_m=60.0, columns=360)
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from linden.authoring.pointcloud.drive import places_along
 from linden.maps.opendrive.parse import parse
+from linden_maps.pointcloud.drive import places_along
 from opendrive_texts import lane, line, opendrive, road, section, street_through_junction
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linden.authoring.pointcloud.cloud import HERE, Cloud, Scan
-from linden.authoring.pointcloud.merge import merge
-from linden.authoring.pointcloud.pcd_reading import clouds_of
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
+from linden_maps.pointcloud.cloud import HERE, Cloud, Scan
+from linden_maps.pointcloud.merge import merge
+from linden_maps.pointcloud.pcd_reading import clouds_of
+from linden_maps.pointcloud.pcd_writing import PcdWriter
 
 SCANS = [Scan(HERE, Cloud(np.array([[0.05, 0.05, 0.05], [x, 1.0, 1.0]]) + 0.01), 1) for x in (1.0, 2.0, 3.0)]
 

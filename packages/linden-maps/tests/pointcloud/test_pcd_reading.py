@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fakes.pcd_files import pcd
-from linden.authoring.pointcloud.pcd_reading import clouds_of, header_of
 from linden.errors import UserError
+from linden_maps.pointcloud.pcd_reading import clouds_of, header_of
 
 FORMS = ["ascii", "binary", "binary_compressed"]
 XYZ = {

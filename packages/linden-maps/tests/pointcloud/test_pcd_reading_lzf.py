@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fakes.pcd_files import lzf
-from linden.authoring.pointcloud.pcd_reading import unpack
+from linden_maps.pointcloud.pcd_reading import unpack
 
 
 def bytes_of(packed: bytes, size: int) -> bytes | None:

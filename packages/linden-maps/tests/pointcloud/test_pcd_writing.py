@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linden.authoring.pointcloud.cloud import Cloud
-from linden.authoring.pointcloud.pcd_reading import clouds_of, header_of
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
 from linden.errors import UserError
+from linden_maps.pointcloud.cloud import Cloud
+from linden_maps.pointcloud.pcd_reading import clouds_of, header_of
+from linden_maps.pointcloud.pcd_writing import PcdWriter
 
 POINTS = np.array([[1.5, -2.25, 3.0], [1e4, 0.125, -7.5]])
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from fakes.pcd_files import pcd
-from linden.authoring.pointcloud.cloud import Cloud, Scan, in_map
-from linden.authoring.pointcloud.drive import Place
-from linden.authoring.pointcloud.scan_folder import kept_scans, recorded
 from linden.errors import UserError
+from linden_maps.pointcloud.cloud import Cloud, Scan, in_map
+from linden_maps.pointcloud.drive import Place
+from linden_maps.pointcloud.scan_folder import kept_scans, recorded
 
 POINT = {"x": np.float32([1.0]), "y": np.float32([2.0]), "z": np.float32([3.0])}
 LABELLED = {**POINT, "label": np.uint32([7])}

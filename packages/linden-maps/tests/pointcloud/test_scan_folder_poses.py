@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linden.authoring.pointcloud.drive import Place
-from linden.authoring.pointcloud.scan_folder import pose_line, read_poses, write_poses
 from linden.errors import UserError
+from linden_maps.pointcloud.drive import Place
+from linden_maps.pointcloud.scan_folder import pose_line, read_poses, write_poses
 
 
 def test_a_pose_comes_back_as_it_was_written(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linden.authoring.pointcloud.cloud import Cloud
-from linden.authoring.pointcloud.voxels import VoxelGrid
 from linden.errors import UserError
+from linden_maps.pointcloud.cloud import Cloud
+from linden_maps.pointcloud.voxels import VoxelGrid
 
 
 def filtered(folder: Path, clouds: Iterable[Cloud], voxel_m: float = 0.2, **limits: int) -> Cloud:

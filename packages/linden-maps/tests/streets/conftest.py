@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.street_facts import Facts
+from linden_maps.streets.build import Built, assembled
+from linden_maps.streets.geojson import read
+from linden_maps.streets.street_facts import Facts
 from tracing import untraced_here
 
 ORIGIN = (-83.0, 40.0)

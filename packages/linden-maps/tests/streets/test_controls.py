@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.checks.check import Severity, check
-from linden.authoring.streets.build import Built
-from linden.authoring.streets.curves import length, moved, pose_at, seen_from
-from linden.authoring.streets.document import RoadRecord, Signal
-from linden.authoring.streets.writing import text
 from linden.maps.opendrive.parse import parse
+from linden_maps.checks.check import Severity, check
+from linden_maps.streets.build import Built
+from linden_maps.streets.curves import length, moved, pose_at, seen_from
+from linden_maps.streets.document import RoadRecord, Signal
+from linden_maps.streets.writing import text
 
 
 def signals_of(built: Built) -> list[tuple[RoadRecord, Signal]]:

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.cross_section import NARROWEST_LANE_M, PAVED, of_street, view
-from linden.authoring.streets.street_facts import Street
+from linden_maps.streets.cross_section import NARROWEST_LANE_M, PAVED, of_street, view
+from linden_maps.streets.street_facts import Street
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from linden.authoring.streets.curves import (
+from linden_maps.streets.curves import (
     Path,
     Piece,
     Pose,

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.cross_section import of_street
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
+from linden_maps.streets.cross_section import of_street
+from linden_maps.streets.geojson import read
+from linden_maps.streets.street_facts import Control
 
 
 def test_points_lie_in_metres_about_the_origin(facts_of: Any, sketch: Any) -> None:

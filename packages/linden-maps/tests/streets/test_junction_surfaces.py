@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linden.authoring.checks.check import check
-from linden.authoring.statistics import count
-from linden.authoring.streets.build import Built, assembled, off_ground_m
-from linden.authoring.streets.curves import length
-from linden.authoring.streets.document import value
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.junction_surfaces import fitted
-from linden.authoring.streets.terrain import Terrain
-from linden.authoring.streets.writing import text
 from linden.maps.ground import Ground
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.check import check
+from linden_maps.statistics import count
+from linden_maps.streets.build import Built, assembled, off_ground_m
+from linden_maps.streets.curves import length
+from linden_maps.streets.document import value
+from linden_maps.streets.geojson import read
+from linden_maps.streets.junction_surfaces import fitted
+from linden_maps.streets.terrain import Terrain
+from linden_maps.streets.writing import text
 
 Heights = Callable[[np.ndarray, np.ndarray], np.ndarray]
 HALF_M = 300.0

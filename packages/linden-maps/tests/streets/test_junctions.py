@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.curves import along, length, moved, wrapped
-from linden.authoring.streets.document import value
-from linden.authoring.streets.junctions import conflicting, corner_road, lane_pairs, pose_in, pose_out, surface, turns
-from linden.authoring.streets.network import Leg, build
+from linden_maps.streets.curves import along, length, moved, wrapped
+from linden_maps.streets.document import value
+from linden_maps.streets.junctions import conflicting, corner_road, lane_pairs, pose_in, pose_out, surface, turns
+from linden_maps.streets.network import Leg, build
 
 
 @pytest.fixture

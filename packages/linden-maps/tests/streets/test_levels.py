@@ -3,14 +3,14 @@
 import pytest
 
 from fakes import osm_forks
-from linden.authoring.checks.check import Severity, check
-from linden.authoring.openstreetmap.convert import convert
-from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.document import value
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.levels import LEVEL_M
-from linden.authoring.streets.writing import text
 from linden.maps.opendrive.parse import parse
+from linden_maps.checks.check import Severity, check
+from linden_maps.openstreetmap.convert import convert
+from linden_maps.streets.build import Built, assembled
+from linden_maps.streets.document import value
+from linden_maps.streets.geojson import read
+from linden_maps.streets.levels import LEVEL_M
+from linden_maps.streets.writing import text
 
 
 def built(**options: str) -> Built:

@@ -16,11 +16,11 @@ import networkx as nx
 import pytest
 from lxml import etree
 
-from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.controls import without_lights
-from linden.authoring.streets.routes import drive, xml
-from linden.authoring.streets.writing import text
 from linden.geometry import from_opendrive
+from linden_maps.streets.build import Built, assembled
+from linden_maps.streets.controls import without_lights
+from linden_maps.streets.routes import drive, xml
+from linden_maps.streets.writing import text
 
 SEED = 20200205  # the shuttle's first day
 MAP = Path(str(resources.files("linden").joinpath("data/Linden.xodr")))

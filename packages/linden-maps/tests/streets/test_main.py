@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.__main__ import main
-from linden.authoring.streets.build import build
+from linden_maps.streets.__main__ import main
+from linden_maps.streets.build import build
 
 
 def test_map_and_routes_are_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sketch: Any) -> None:

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.controls import POST_TO_KERB_M
-from linden.authoring.streets.cross_section import KERB_M, PAVED
-from linden.authoring.streets.curves import length, moved, pose_at
-from linden.authoring.streets.document import Object
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.name_signs import NAME
+from linden_maps.streets.build import Built, assembled
+from linden_maps.streets.controls import POST_TO_KERB_M
+from linden_maps.streets.cross_section import KERB_M, PAVED
+from linden_maps.streets.curves import length, moved, pose_at
+from linden_maps.streets.document import Object
+from linden_maps.streets.geojson import read
+from linden_maps.streets.name_signs import NAME
 
 
 def signs(built: Built) -> list[tuple[Any, Object]]:

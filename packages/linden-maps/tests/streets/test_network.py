@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.curves import length, sharpest
-from linden.authoring.streets.network import CORNER_RADII_M, SHORTEST_ROAD_M, build, nearest_road
 from linden.errors import UserError
+from linden_maps.streets.curves import length, sharpest
+from linden_maps.streets.network import CORNER_RADII_M, SHORTEST_ROAD_M, build, nearest_road
 
 
 def test_a_crossing_has_four_legs_counter_clockwise_that_look_in(facts_of: Any, sketch: Any) -> None:

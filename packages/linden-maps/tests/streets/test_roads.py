@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.cross_section import Lane
-from linden.authoring.streets.curves import Piece, Pose, length
-from linden.authoring.streets.document import value
-from linden.authoring.streets.roads import blended, elevation
-from linden.authoring.streets.street_facts import Ground
+from linden_maps.streets.cross_section import Lane
+from linden_maps.streets.curves import Piece, Pose, length
+from linden_maps.streets.document import value
+from linden_maps.streets.roads import blended, elevation
+from linden_maps.streets.street_facts import Ground
 
 GROUND = Ground(250.0, 0.01, 0.0, "estimated")
 NORTHWARD = (Piece(Pose(0.0, 0.0, math.pi / 2), 200.0, 0.0),)

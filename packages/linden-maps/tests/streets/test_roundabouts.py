@@ -6,15 +6,15 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.build import assembled
-from linden.authoring.streets.curves import along, length, pose_at, sampled, wrapped
-from linden.authoring.streets.document import value
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.junctions import Turn
-from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M, build
-from linden.authoring.streets.rings import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, LANE_RADII_M
-from linden.authoring.streets.roundabouts import turns
 from linden.errors import UserError
+from linden_maps.streets.build import assembled
+from linden_maps.streets.curves import along, length, pose_at, sampled, wrapped
+from linden_maps.streets.document import value
+from linden_maps.streets.geojson import read
+from linden_maps.streets.junctions import Turn
+from linden_maps.streets.network import ROUNDABOUT_SETBACK_M, build
+from linden_maps.streets.rings import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, LANE_RADII_M
+from linden_maps.streets.roundabouts import turns
 
 
 @pytest.fixture

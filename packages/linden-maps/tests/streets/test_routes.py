@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from linden.authoring.streets.build import Built
-from linden.authoring.streets.routes import SPACING_M, drive, positions, xml
-from linden.authoring.streets.street_facts import Route
 from linden.errors import UserError
+from linden_maps.streets.build import Built
+from linden_maps.streets.routes import SPACING_M, drive, positions, xml
+from linden_maps.streets.street_facts import Route
 
 WEST, MIDDLE, EAST, NORTH = (-100.0, 0.0), (0.0, 0.0), (100.0, 0.0), (0.0, 100.0)
 

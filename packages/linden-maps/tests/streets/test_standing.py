@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.standing import CLEAR_M
 from linden.errors import UserError
+from linden_maps.streets.standing import CLEAR_M
 
 
 def house(

@@ -15,14 +15,14 @@ import rasterio
 from affine import Affine
 from pyproj import CRS, Transformer
 
-from linden.authoring.statistics import count
-from linden.authoring.streets.build import assembled, off_ground_m
-from linden.authoring.streets.street_facts import Facts
-from linden.authoring.streets.terrain import with_terrain
-from linden.authoring.streets.writing import text
 from linden.cli import main
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
+from linden_maps.statistics import count
+from linden_maps.streets.build import assembled, off_ground_m
+from linden_maps.streets.street_facts import Facts
+from linden_maps.streets.terrain import with_terrain
+from linden_maps.streets.writing import text
 
 UTM = "EPSG:32617"  # of 83 degrees west
 HALF_M = 260.0

@@ -4,8 +4,8 @@ from typing import Any
 
 from lxml import etree
 
-from linden.authoring.streets.build import build
-from linden.authoring.streets.writing import _fixed, text
+from linden_maps.streets.build import build
+from linden_maps.streets.writing import _fixed, text
 
 
 def test_numbers_have_no_closing_noughts_and_no_negative_nought() -> None:

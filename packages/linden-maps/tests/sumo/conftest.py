@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from linden.authoring.sumo.network import Converted, convert
+from linden_maps.sumo.network import Converted, convert
 from tracing import untraced_here
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")

@@ -8,14 +8,14 @@ import pytest
 from lxml import etree
 from shapely.geometry import LineString, Point, Polygon
 
-from linden.authoring.sumo import programs
-from linden.authoring.sumo.bus_stops import RouteStop, bus_stops, stops_file
-from linden.authoring.sumo.check import compare
-from linden.authoring.sumo.demand import Demand, draw, trips_per_hour
-from linden.authoring.sumo.network import Converted, convert, with_lane_speeds
-from linden.authoring.sumo.vehicle_types import MIX, blueprints, types_file
 from linden.errors import UserError
 from linden.maps.navigation.areas import crosswalk_outlines
+from linden_maps.sumo import programs
+from linden_maps.sumo.bus_stops import RouteStop, bus_stops, stops_file
+from linden_maps.sumo.check import compare
+from linden_maps.sumo.demand import Demand, draw, trips_per_hour
+from linden_maps.sumo.network import Converted, convert, with_lane_speeds
+from linden_maps.sumo.vehicle_types import MIX, blueprints, types_file
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
 

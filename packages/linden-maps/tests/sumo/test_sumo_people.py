@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from linden.authoring.sumo import programs, write_folder
-from linden.authoring.sumo.bus_stops import BusStop, RouteStop, bus_stops, parking_areas
-from linden.authoring.sumo.check import compare, walkable
-from linden.authoring.sumo.demand import Demand, draw
-from linden.authoring.sumo.net import point_at
-from linden.authoring.sumo.network import Converted
-from linden.authoring.sumo.people import FARTHER_M, WALK_REACH_M, draw_riders, draw_walks, people_file
-from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, car_streets, pavements, places_of
 from linden.errors import UserError
+from linden_maps.sumo import programs, write_folder
+from linden_maps.sumo.bus_stops import BusStop, RouteStop, bus_stops, parking_areas
+from linden_maps.sumo.check import compare, walkable
+from linden_maps.sumo.demand import Demand, draw
+from linden_maps.sumo.net import point_at
+from linden_maps.sumo.network import Converted
+from linden_maps.sumo.people import FARTHER_M, WALK_REACH_M, draw_riders, draw_walks, people_file
+from linden_maps.sumo.places import SCHOOL, TRANSIT, Place, car_streets, pavements, places_of
 
 ORIGIN_DEG = (39.9937118, -82.9816685)
 STOPS = (

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from linden.authoring.unreal.parts import Part, parts_of
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
 from linden.scenery.patches import ABOVE_GROUND, Frames, Look, boxes, polygons
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
 from linden.scenery.streets.road import KERB_STONE
+from linden_maps.unreal.parts import Part, parts_of
 
 UP = (0.0, 0.0, 1.0)
 

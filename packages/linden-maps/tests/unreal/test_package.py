@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdShade
 
-from linden.authoring.unreal.fbx import fbx
-from linden.authoring.unreal.package import names_of, write_package
-from linden.authoring.unreal.parts import Part
 from linden.cli import main
 from linden.errors import UserError
+from linden_maps.unreal.fbx import fbx
+from linden_maps.unreal.package import names_of, write_package
+from linden_maps.unreal.parts import Part
 from opendrive_texts import street_through_junction
 
 
@@ -29,7 +29,7 @@ def folder(parts: list[Part], tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def by_ufbx(folder: Path) -> Any:
     command = [sys.executable, "-m", "fakes.fbx_reader", str(folder / "Town" / "Town.fbx")]
-    tests = str(Path(__file__).parents[3])
+    tests = str(Path(__file__).parents[4] / "tests")
     ended = subprocess.run(command, check=True, capture_output=True, text=True, env={"PYTHONPATH": tests})
     return json.loads(ended.stdout)
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from linden.authoring.unreal.parts import MOST_COLOURS, Part, parts_of
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, faces
 from linden.scenery.patches import Look, polygons
 from linden.scenery.scene.objects import BOX, THING, Scene
+from linden_maps.unreal.parts import MOST_COLOURS, Part, parts_of
 
 
 def test_each_group_and_tile_is_one_part(parts: list[Part]) -> None:

@@ -6,7 +6,7 @@ from threading import Event
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
+sys.path.insert(0, str(Path(__file__).parents[4] / "tests"))
 
 from fakes.crafted_maps import opendrive
 from linden.background import NotWantedError, in_background

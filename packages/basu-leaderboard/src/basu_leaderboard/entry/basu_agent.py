@@ -1,7 +1,7 @@
 """A BASU agent as the CARLA leaderboard (1.0, 2.x) and ScenarioRunner want one: give either this file as ``--agent``.
 
 Which agent it is stands in the file of ``--agent-config`` (leaderboard) or ``--agentConfig`` (ScenarioRunner):
-``{"agent": "basic"}``, and see :class:`basu.agents.adapters.exported_agent.ExportConfig`. ScenarioRunner finds the
+``{"agent": "basic"}``, and see :class:`basu_leaderboard.exported_agent.ExportConfig`. ScenarioRunner finds the
 class by this file's name, the leaderboard by ``get_entry_point``.
 """
 
@@ -11,7 +11,7 @@ import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.adapters.exported_agent import ExportedAgent, read_config
+from basu_leaderboard.exported_agent import ExportedAgent, read_config
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 
-from basu.agents.adapters.provided.planned_agent import PlannedAgent
+from basu_leaderboard.provided.planned_agent import PlannedAgent
 
 
 class Track(enum.Enum):

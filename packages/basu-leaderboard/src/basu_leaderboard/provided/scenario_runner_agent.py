@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from basu.agents.adapters.provided.planned_agent import PlannedAgent
+from basu_leaderboard.provided.planned_agent import PlannedAgent
 
 
 class AutonomousAgent(PlannedAgent):

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.ros.autoware_base import AutowareBase
-from basu.agents.ros.commands import REVERSE, Wanted, autoware_command
-from basu.agents.ros.lockstep import NODE
-from basu.ros import autoware
-from basu.ros.dds import Node
-from basu.ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
+from basu_ros import autoware
+from basu_ros.agents.autoware_base import AutowareBase
+from basu_ros.agents.commands import REVERSE, Wanted, autoware_command
+from basu_ros.agents.lockstep import NODE
+from basu_ros.dds import Node
+from basu_ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.ros.moment import Moment
-    from basu.ros.node import RosNode
-    from basu.ros.topics import Topic
+    from basu_ros.moment import Moment
+    from basu_ros.node import RosNode
+    from basu_ros.topics import Topic
 
 
 class AutowareAgent(AutowareBase):

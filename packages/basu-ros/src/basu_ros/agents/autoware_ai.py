@@ -13,24 +13,24 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
-from basu.agents.ros.autoware_base import AutowareBase
-from basu.agents.ros.commands import Wanted, finite
-from basu.agents.ros.legs import Legs
-from basu.agents.ros.lockstep import NODE, is_answer
-from basu.agents.ros.ros1 import FIRST_S
 from basu.errors import AgentTimedOutError
-from basu.ros import autoware_ai as ai
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.ros1 import Node
-from basu.ros.topics import CLOCK, Message, odometry_of, path_message, path_of
 from basu.thresholds import AT_REST_MPS
+from basu_ros import autoware_ai as ai
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.agents.autoware_base import AutowareBase
+from basu_ros.agents.commands import Wanted, finite
+from basu_ros.agents.legs import Legs
+from basu_ros.agents.lockstep import NODE, is_answer
+from basu_ros.agents.ros1 import FIRST_S
+from basu_ros.ros1 import Node
+from basu_ros.topics import CLOCK, Message, odometry_of, path_message, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.ros.moment import Moment
-    from basu.ros.topics import Topic
-    from basu.ros.types import Types
+    from basu_ros.moment import Moment
+    from basu_ros.topics import Topic
+    from basu_ros.types import Types
 
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.agents.builtin.perception import SHUTTLE
-from basu.agents.ros.lockstep import LockstepAgent
+from basu_ros.agents.lockstep import LockstepAgent
 
 if TYPE_CHECKING:
     from basu.agents.builtin.perception import VehicleFacts

@@ -15,13 +15,13 @@ import carla
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.builtin.perception import SHUTTLE, read_facts
 from basu.agents.calls import SETUP_LIMIT_S, OverrunError
-from basu.agents.ros.commands import AckermannControl, Wanted, ackermann_command, carla_command
-from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
 from basu.agents.sensor_file import read_sensors
 from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 from basu.files import find
-from basu.ros.moment import Vehicle
-from basu.ros.topics import (
+from basu_ros.agents.commands import AckermannControl, Wanted, ackermann_command, carla_command
+from basu_ros.agents.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
+from basu_ros.moment import Vehicle
+from basu_ros.topics import (
     Message,
     Topic,
     ackermann_of,
@@ -32,15 +32,15 @@ from basu.ros.topics import (
     path_of,
     vehicle_topics,
 )
-from basu.ros.topics import control_of as control_topic
-from basu.ros.vehicle_messages import nanoseconds
+from basu_ros.topics import control_of as control_topic
+from basu_ros.vehicle_messages import nanoseconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from basu.agents.builtin.perception import VehicleFacts
-    from basu.ros.moment import Moment
-    from basu.ros.node import RosNode
+    from basu_ros.moment import Moment
+    from basu_ros.node import RosNode
 
 APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
 UNHEARD_S = 5.0  # wall time for DDS to compare types, and for another node to appear beside one that cannot be heard

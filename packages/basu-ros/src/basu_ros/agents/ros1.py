@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.lockstep import NODE, LockstepAgent
-from basu.ros.ros1 import Node
+from basu_ros.agents.lockstep import NODE, LockstepAgent
+from basu_ros.ros1 import Node
 
 if TYPE_CHECKING:
-    from basu.ros.node import RosNode
+    from basu_ros.node import RosNode
 
 FIRST_S = 1.0  # the time of the first frame: a clock of 0 says "no clock yet" to nodes of ROS 1 (wiki.ros.org/Clock)
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.lockstep import NODE, LockstepAgent
-from basu.ros.dds import Node
+from basu_ros.agents.lockstep import NODE, LockstepAgent
+from basu_ros.dds import Node
 
 if TYPE_CHECKING:
-    from basu.ros.node import RosNode
+    from basu_ros.node import RosNode
 
 
 class RosAgent(LockstepAgent):

@@ -9,10 +9,10 @@ import numpy as np
 
 from basu.agents.sight.actors import Kind
 from basu.records.motion import motion_of
-from basu.ros.frames import vector
-from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
-from basu.ros.sensor_messages import vector3
-from basu.ros.topics import Message, info_of
+from basu_ros.frames import vector
+from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
+from basu_ros.sensor_messages import vector3
+from basu_ros.topics import Message, info_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sight import Other
-    from basu.ros.types import Types
+    from basu_ros.types import Types
 
 TYPE_OF_KIND = {Kind.VEHICLE: "vehicle.", Kind.WALKER: "walker.", Kind.PROP: "static.prop."}
 """The beginning of a blueprint's id, which is all that an agent sees of it."""

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from basu.cli.later import later
+from basu.plugins import Command
 
 EZ10_M = (1.97, 1.97, 1.99)  # front, rear and width of vehicle.easymile.ez10, the default vehicle
 
@@ -26,7 +27,7 @@ def add_ros(ros: argparse.ArgumentParser) -> None:
         metavar="BAG",
         help="where to: a folder (ROS 2), a file that ends in .mcap (ROS 2) or in .bag (ROS 1)",
     )
-    bag.set_defaults(command=later("basu.cli.ros_bag:run"))
+    bag.set_defaults(command=later("basu_ros.cli.ros_bag:run"))
     _add_read(actions.add_parser("read", help="make a run's record of a bag"))
 
 
@@ -54,4 +55,7 @@ def _add_read(read: argparse.ArgumentParser) -> None:
         help="how far the vehicle's middle lies ahead of the point of the odometry, such as a rear axle "
         "(default: %(default)s)",
     )
-    read.set_defaults(command=later("basu.cli.ros_read:run"))
+    read.set_defaults(command=later("basu_ros.cli.ros_read:run"))
+
+
+ROS = Command("ROS bags of runs, and runs of ROS bags", add_ros)

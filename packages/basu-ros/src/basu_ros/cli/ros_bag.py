@@ -7,9 +7,9 @@ import shutil
 from pathlib import Path
 
 from basu.errors import UserError
-from basu.output.ros.record_bag import write_record
 from basu.records.history.files import read_history
-from basu.ros.types import Generation
+from basu_ros.output.record_bag import write_record
+from basu_ros.types import Generation
 
 
 def run(arguments: argparse.Namespace) -> int:

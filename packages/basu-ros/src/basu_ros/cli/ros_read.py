@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from basu.errors import UserError
 from basu.output.report.documents import make_draft, publish
-from basu.output.ros.track_record import Shape, record_of
-from basu.records.carla_log.sources import read_map
 from basu.records.history.files import write_history
-from basu.ros.bag_track import read_track
+from basu.records.recording_files import read_map
 from basu.routing.route_file import read_routes
+from basu_ros.bag_track import read_track
+from basu_ros.output.track_record import Shape, record_of
 
 if TYPE_CHECKING:
     import carla

@@ -5,15 +5,15 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.vehicle_source import control_of, info_message
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
-from basu.output.ros.live_vehicle import LiveVehicle
-from basu.output.ros.record_bag import command_message, event_messages, event_topics
-from basu.ros.bag_file import BagFile
-from basu.ros.topics import control_of as control_topic
-from basu.ros.topics import first_messages, moment_messages, vehicle_topics
-from basu.ros.types import Generation
+from basu_ros.agents.vehicle_source import control_of, info_message
+from basu_ros.bag_file import BagFile
+from basu_ros.output.live_vehicle import LiveVehicle
+from basu_ros.output.record_bag import command_message, event_messages, event_topics
+from basu_ros.topics import control_of as control_topic
+from basu_ros.topics import first_messages, moment_messages, vehicle_topics
+from basu_ros.types import Generation
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.vehicle_source import BRAKED, control_of, mount_of
 from basu.agents.sensor_streams import ON_EVENT
-from basu.ros.moment import Actor, Light, Measurement, Moment, Motion, Vehicle
+from basu_ros.agents.vehicle_source import BRAKED, control_of, mount_of
+from basu_ros.moment import Actor, Light, Measurement, Moment, Motion, Vehicle
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run

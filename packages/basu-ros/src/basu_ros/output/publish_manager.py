@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.vehicle_source import info_message
 from basu.managers.base_manager import BaseManager
-from basu.output.ros.live_vehicle import LiveVehicle
-from basu.output.ros.record_bag import event_messages, event_topics
-from basu.ros.topics import first_messages, moment_messages, path_message, path_of, vehicle_topics
+from basu_ros.agents.vehicle_source import info_message
+from basu_ros.output.live_vehicle import LiveVehicle
+from basu_ros.output.record_bag import event_messages, event_topics
+from basu_ros.topics import first_messages, moment_messages, path_message, path_of, vehicle_topics
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.ros.node import RosNode
+    from basu_ros.node import RosNode
 
 NODE = "basu_run"
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.bag_file import BagFile
-from basu.ros.moment import Actor, Control, Moment, Motion, Vehicle
-from basu.ros.sensor_messages import MARKINGS, collision_message, lane_invasion_message
-from basu.ros.topics import Message, Topic, control_of, first_messages, moment_messages, vehicle_topics
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.bag_file import BagFile
+from basu_ros.moment import Actor, Control, Moment, Motion, Vehicle
+from basu_ros.sensor_messages import MARKINGS, collision_message, lane_invasion_message
+from basu_ros.topics import Message, Topic, control_of, first_messages, moment_messages, vehicle_topics
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from basu.records.history import History
-    from basu.ros.types import Generation, Types
+    from basu_ros.types import Generation, Types
 
 ROLE = "hero"  # of the vehicle under test, as `basu.episode.world` calls it
 BRAKED = Control(brake=1.0)  # what the vehicle has before its first control

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.ros.bag_track import Track
     from basu.routing.route_file import RouteDescription
+    from basu_ros.bag_track import Track
 
 STEP_S = 0.05  # as a run's
 SPACING_M = 1.0  # between the points of a route

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.agents.manual.devices import import_pygame
+from basu_window.manual.devices import import_pygame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,24 +12,24 @@ from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from basu.agents.manual.inputs import Strike
 from basu.errors import SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
 from basu.managers.observations import Neighbours
-from basu.output.hud.canvas import GREY, RED, WHITE, Canvas
-from basu.output.hud.notices import Judge, Notices
-from basu.output.hud.panel import WIDTH, Panel, draw_help
-from basu.output.hud.readings import Around, Rates, read, setting_of
-from basu.output.hud.sensor_view import ChaseCamera, SensorView
-from basu.output.hud.top_down import Body, TopDown
+from basu_window.hud.canvas import GREY, RED, WHITE, Canvas
+from basu_window.hud.notices import Judge, Notices
+from basu_window.hud.panel import WIDTH, Panel, draw_help
+from basu_window.hud.readings import Around, Rates, read, setting_of
+from basu_window.hud.sensor_view import ChaseCamera, SensorView
+from basu_window.hud.top_down import Body, TopDown
+from basu_window.manual.inputs import Strike
 
 if TYPE_CHECKING:
-    from basu.agents.manual.inputs import Person
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
     from basu.options.drive import DriveOptions
-    from basu.output.hud.readings import Setting
+    from basu_window.hud.readings import Setting
+    from basu_window.manual.inputs import Person
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that
 RUN_TO_DRAW = 4.0  # there the run gets at least so many times what drawing takes

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.output.hud.canvas import BLACK, BLUE, GREEN, GREY, RED, WHITE, YELLOW
-from basu.output.hud.readings import compass_point, degrees
+from basu_window.hud.canvas import BLACK, BLUE, GREEN, GREY, RED, WHITE, YELLOW
+from basu_window.hud.readings import compass_point, degrees
 
 if TYPE_CHECKING:
-    from basu.output.hud.canvas import Canvas, Colour
-    from basu.output.hud.readings import Readings
+    from basu_window.hud.canvas import Canvas, Colour
+    from basu_window.hud.readings import Readings
 
 WIDTH, MARGIN, ROW = 250, 12, 16
 MPS_PER_MPH = 0.44704

@@ -5,21 +5,21 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
-from basu.agents.manual.devices import Devices, check_display
-from basu.agents.manual.inputs import Person
-from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session, write_session
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.base_manager import BaseManager
-from basu.output.hud.hud import Hud
+from basu_window.hud.hud import Hud
+from basu_window.manual.devices import Devices, check_display
+from basu_window.manual.inputs import Person
+from basu_window.manual.session import Played, RecordingSource, Session, Setting, read_session, write_session
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from basu.agents.manual.inputs import InputSource
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
     from basu.options.drive import DriveOptions
+    from basu_window.manual.inputs import InputSource
 
 
 def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
@@ -57,7 +57,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
 def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseManager]:
     """Return the managers of the window, which names the agent, and of the recorded keys."""
     person = live.agents.person
-    if person is None:
+    if not isinstance(person, Person):
         return []
     found: list[BaseManager] = []
     if options.keys is not None or options.record_keys is not None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import Ego, Frame, Run
-    from basu.output.hud.notices import Judgement
+    from basu_window.hud.notices import Judgement
 
 GRAVITY_MPS2 = 9.81
 MPS_PER_KMH = 1.0 / 3.6

@@ -11,8 +11,8 @@ import numpy as np
 
 from basu.errors import SimulatorError
 from basu.managers.sensors_manager import PARTING_TICKS
-from basu.output.hud.canvas import GREEN, GREY, WHITE, YELLOW
-from basu.output.hud.readings import compass_point, degrees, fix_of
+from basu_window.hud.canvas import GREEN, GREY, WHITE, YELLOW
+from basu_window.hud.readings import compass_point, degrees, fix_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.managers.base_manager import Run
-    from basu.output.hud.canvas import Canvas
+    from basu_window.hud.canvas import Canvas
 
 
 BEHIND_M, ABOVE_M, DOWN_DEG = 4.5, 1.6, 12.0  # of the vehicle's rear and roof: it fills the lower middle of the picture

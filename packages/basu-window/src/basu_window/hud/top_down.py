@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 import numpy as np
 
-from basu.output.hud.canvas import BLUE, GREEN, GREY, RED, WHITE, YELLOW
 from basu.routing import ControlKind
+from basu_window.hud.canvas import BLUE, GREEN, GREY, RED, WHITE, YELLOW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from basu.managers.base_manager import Ego, Frame, Run
     from basu.metrics.infraction import Evidence
-    from basu.output.hud.canvas import Canvas, Colour
+    from basu_window.hud.canvas import Canvas, Colour
 
 SPACING_M = 2.0  # between the points of a lane's edges
 PIECE = 20  # points of a lane that are drawn or left out together

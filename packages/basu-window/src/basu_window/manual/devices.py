@@ -9,9 +9,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.manual.inputs import Axes, Held, Input, Strike
-from basu.agents.manual.joystick import axes, layout_for
 from basu.errors import UserError
+from basu_window.manual.inputs import Axes, Held, Input, Strike
+from basu_window.manual.joystick import axes, layout_for
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,9 +6,9 @@ import configparser
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.agents.manual.inputs import Axes, Strike
 from basu.errors import UserError
 from basu.files import PACKAGE_FOLDER
+from basu_window.manual.inputs import Axes, Strike
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,15 +16,15 @@ from dataclasses import asdict, dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
 from basu.errors import UserError
 from basu.files import loads, write_bytes
+from basu_window.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from basu.agents.manual.inputs import InputSource
+    from basu_window.manual.inputs import InputSource
 
 VERSION = 1
 MOST_TICKS = 1_000_000  # 14 hours: a longer session is a mistake in a file

@@ -9,7 +9,7 @@ import carla
 import numpy as np
 import rerun as rr
 
-from basu.output.viewer.layout import TIMELINE, Pose, about_the_vertical, shown, turned
+from basu_window.viewer.layout import TIMELINE, Pose, about_the_vertical, shown, turned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

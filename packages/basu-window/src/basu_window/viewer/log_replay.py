@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.errors import UserError
-from basu.output.viewer import entities
-from basu.output.viewer.entities import log_map
-from basu.output.viewer.layout import Parts, Pose
-from basu.output.viewer.stream import close_stream, open_stream
-from basu.records.carla_log.arrays import ActorArrays, actor_arrays, locations_m
-from basu.records.carla_log.layouts import Kind
+from basu_carla_log.arrays import ActorArrays, actor_arrays, locations_m
+from basu_carla_log.layouts import Kind
+from basu_window.viewer import entities
+from basu_window.viewer.entities import log_map
+from basu_window.viewer.layout import Parts, Pose
+from basu_window.viewer.stream import close_stream, open_stream
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.records.carla_log import Log
+    from basu_carla_log import Log
 
 
 SHOWN_TYPES = ("vehicle.*", "walker.*")

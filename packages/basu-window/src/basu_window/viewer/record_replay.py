@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from basu.metrics.incremental import SoFar
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring
-from basu.output.viewer import entities
-from basu.output.viewer.entities import log_map, log_route, log_vehicle
-from basu.output.viewer.layout import Parts, Pose
-from basu.output.viewer.stream import close_stream, open_stream
-from basu.records.carla_log.sources import MAP_FILE, read_map
 from basu.records.history.files import read_history
+from basu.records.recording_files import MAP_FILE, read_map
+from basu_window.viewer import entities
+from basu_window.viewer.entities import log_map, log_route, log_vehicle
+from basu_window.viewer.layout import Parts, Pose
+from basu_window.viewer.stream import close_stream, open_stream
 
 if TYPE_CHECKING:
     from collections.abc import Callable

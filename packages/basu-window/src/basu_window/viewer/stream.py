@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import rerun as rr
 
 from basu.errors import UserError
-from basu.output.viewer.layout import layout
+from basu_window.viewer.layout import layout
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from basu.output.viewer.layout import Parts
+    from basu_window.viewer.layout import Parts
 
 APPLICATION = "basu"
 OPEN_LIMIT_S, POLL_S, SETTLE_S = 20.0, 0.1, 2.0  # for a viewer to listen, and then to find that it cannot draw

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from basu.managers.base_manager import BaseManager, ego_in
 from basu.managers.observations import Neighbours
-from basu.output.viewer import entities
-from basu.output.viewer.entities import EVERY_S, log_map, log_route, log_vehicle, show
-from basu.output.viewer.layout import Parts, Pose
-from basu.output.viewer.stream import Stream, close_stream, has_screen, open_stream
 from basu.records.history import Vehicle
+from basu_window.viewer import entities
+from basu_window.viewer.entities import EVERY_S, log_map, log_route, log_vehicle, show
+from basu_window.viewer.layout import Parts, Pose
+from basu_window.viewer.stream import Stream, close_stream, has_screen, open_stream
 
 if TYPE_CHECKING:
     from collections.abc import Callable

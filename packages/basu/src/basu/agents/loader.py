@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import carla
 
-from basu.agents.adapters.adapted_agent import LeaderboardAgent, adapted
-from basu.agents.adapters.foreign_class import ENTRY_POINT, foreign_agent
-from basu.agents.adapters.replacement_modules import stand_in
+from basu import plugins
+from basu.agents import agent_files
+from basu.agents.agent_files import AgentFile
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
@@ -22,8 +22,6 @@ from basu.files import module_of
 from basu.records.partners import Partner
 
 BUILT_IN = {
-    "autoware": "basu.agents.ros.autoware:AutowareAgent",
-    "autoware-ai": "basu.agents.ros.autoware_ai:AutowareAiAgent",
     "basic": "basu.agents.builtin.basic:BasicAgent",
     "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
     "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
@@ -35,8 +33,6 @@ BUILT_IN = {
     "forward": "basu.agents.builtin.baselines:ForwardAgent",
     "human": "basu.agents.builtin.basic:HumanAgent",
     "incident": "basu.agents.builtin.incident",
-    "ros": "basu.agents.ros.ros2:RosAgent",
-    "ros1": "basu.agents.ros.ros1:Ros1Agent",
 }
 
 PERCEPTIONS: dict[str, dict[str, object]] = {  # what a variant of a built-in agent has in place of the agent's own
@@ -70,6 +66,18 @@ class LoadedAgent(NamedTuple):
         return self.agent_class.driven_by_person
 
 
+def names() -> list[str]:
+    """Return the names of all agents that are installed: BASU's own, and those of plugins."""
+    return sorted([*BUILT_IN, *plugins.offered(plugins.AGENTS)])
+
+
+def is_name(name: str) -> bool:
+    """Return whether a word is the name of an agent, of BASU's or of a plugin's, and so no file."""
+    return (
+        name in BUILT_IN or name in plugins.DISTRIBUTIONS[plugins.AGENTS] or plugins.is_installed(plugins.AGENTS, name)
+    )
+
+
 def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
 
@@ -83,7 +91,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
     """
     loaded = _find(wanted, agent_config)
-    if agent_config is not None and not issubclass(loaded.agent_class, LeaderboardAgent):
+    if agent_config is not None and not agent_files.takes_config(loaded.agent_class):
         raise UserError(
             f"the agent '{wanted}' takes no --agent-config: that is for agents of the leaderboard and of "
             "ScenarioRunner; remove the option"
@@ -99,20 +107,22 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
         agents = _agents_in(vars(importlib.import_module(module_name)), module_name)
         agent = _only([a for a in agents if class_name in {"", a.__name__}], name)
         return _with_knowledge(agent, name, knowledge)
+    if is_name(name):
+        return _with_knowledge(plugins.load(plugins.AGENTS, name, f"the agent '{name}'"), name, knowledge)
     text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
     path = Path(text)
     if path.suffix != ".py":
-        close = difflib.get_close_matches(wanted, BUILT_IN, 1)
-        hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(BUILT_IN)}, or name a Python file"
+        known = names()
+        close = difflib.get_close_matches(wanted, known, 1)
+        hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(known)}, or name a Python file"
         raise UserError(f"there is no agent called '{wanted}'; {hint}")
     if not path.is_file():
         raise UserError(f"the agent's file {path} does not exist; check the name and the folder you are in")
     namespace, module_name = _run_file(path)
     agents = _agents_in(namespace, module_name)
-    if ENTRY_POINT in namespace or not agents:
-        foreign = foreign_agent(namespace, module_name, str(path), class_name or None)
-        if foreign is not None:
-            return LoadedAgent(adapted(foreign, agent_config), path.stem, path)
+    file = AgentFile(namespace, module_name, str(path), class_name or None)
+    if (foreign := agent_files.foreign_agent(file, agent_config, has_own=bool(agents))) is not None:
+        return LoadedAgent(foreign, path.stem, path)
     if class_name:
         agents = [agent for agent in agents if agent.__name__ == class_name]
     return LoadedAgent(_only(agents, str(path)), path.stem, path)
@@ -138,7 +148,7 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
 
     The thesis prints its sample agent without import lines (figure 4.9); such a file is complete here.
     """
-    stand_in()
+    agent_files.prepare()
     name = f"basu_agent_{path.stem}"
     module, loader = module_of(path, name)
     module.__dict__.update(carla=carla, AutonomousAgent=AutonomousAgent)
@@ -154,6 +164,7 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
         )
         raise UserError(
             f"the agent's file {path} does not load: line {line}: {type(error).__name__}: {error}"
+            f"{agent_files.hint_on(error)}"
         ) from error
     return module.__dict__, name
 

@@ -13,6 +13,7 @@ from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE
 from basu.campaigns.drive_table import DriveTable, journal_rows, open_drives
 from basu.campaigns.looks import Looks
 from basu.campaigns.records import Records
+from basu.campaigns.search_part import search_plugin
 from basu.jobs.job import Job, Lost, versions
 from basu.outcome import Fault, Status
 from basu.output.report.documents import write_json
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from basu.campaigns.plan import CampaignPlan
     from basu.campaigns.player import DriveDone
-    from basu.campaigns.search.strands import Strands
+    from basu.campaigns.search_part import SearchStates
     from basu.campaigns.storage import Mirror
     from basu.jobs.job import Done
     from basu.jobs.pool import Pool
@@ -195,13 +196,11 @@ class CampaignRun:
         return f"{done} drives\n{folder}\nreport            basu campaign report {where}"
 
 
-def _strands(plan: CampaignPlan, folder: Path) -> Strands | None:
-    """The searches of a campaign; None where it has none, so that it needs no surrogate."""
+def _strands(plan: CampaignPlan, folder: Path) -> SearchStates | None:
+    """The searches of a campaign; None where it has none, so that it needs no plugin."""
     if all(part.search is None for part in plan.parts):
         return None
-    from basu.campaigns.search.strands import Strands  # noqa: PLC0415 - scipy and scikit-learn, an extra
-
-    return Strands(plan, folder)
+    return search_plugin().states(plan, folder)
 
 
 def lost_row(sentence: str) -> dict[str, Any]:

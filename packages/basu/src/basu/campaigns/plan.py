@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.campaigns.search.part import SearchPart, SearchPlace, StrandKey
+from basu.campaigns.search_part import SearchPart, SearchPlace, StrandKey
 from basu.campaigns.settings import Campaign, OtherTraffic, Seeds
 from basu.campaigns.shuffle import Shuffle
 from basu.conditions import WORLD

@@ -18,8 +18,8 @@ from basu.campaigns.plan import (
     case_subject,
     digest_of,
 )
-from basu.campaigns.search.part import SearchPart
-from basu.campaigns.search.space import space_of
+from basu.campaigns.search_part import SearchPart, search_plugin
+from basu.campaigns.search_space import space_of
 from basu.campaigns.settings import AS_GIVEN, Campaign, OtherTraffic
 from basu.episode.world import weather_called
 from basu.errors import UserError
@@ -132,17 +132,16 @@ def _search(drives: Drives, campaign: Campaign, weather: tuple[str, ...], scenar
     """A [[drives]] with a search or an estimate.
 
     Raises:
-        UserError: a parameter cannot be searched over, or the extra is not installed.
+        UserError: a parameter cannot be searched over, or the plugin is not installed.
     """
-    from basu.campaigns.search.strands import proposer_of  # noqa: PLC0415 - scipy and scikit-learn, an extra
-
+    plugin = search_plugin()
     fixed = tuple((name, str(value)) for name, value in drives.fixed.items())
     cases = varied(cases_of(drives.cases, scenario_files), Variation(fixed=fixed))
     normal = {} if drives.estimate is None else drives.estimate.normal
     spaces = tuple(space_of(case, drives.vary, drives.fixed, normal) for case in cases)
     seeds = drives.seeds or campaign.seeds
     part = SearchPart(cases, spaces, fixed, weather, seeds, drives.search, drives.estimate, ())
-    part = replace(part, sizes=proposer_of(part, 0).sizes)
+    part = replace(part, sizes=plugin.sizes(part))
     subjects = tuple(case_subject(case) for case in cases)
     return Part(subjects, weather, (OtherTraffic(),), seeds, drives.scenarios, part)
 

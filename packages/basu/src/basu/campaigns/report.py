@@ -15,7 +15,7 @@ from basu.campaigns.conclusions import breakdown, costs, distinct, means, pairs,
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.plan import CASE
 from basu.campaigns.records import FAILURE, FAULT, SAMPLE, folder_of, kept_in
-from basu.campaigns.search.part import SEARCH
+from basu.campaigns.search_part import SEARCH, search_plugin
 from basu.errors import UserError
 from basu.files import read_json, write_bytes
 from basu.output.report.documents import read_run
@@ -108,9 +108,7 @@ def _search(folder: Path, table: pa.Table, confidence: float) -> Markup | None:
     """The sections of searches and estimates; None where the campaign has none."""
     if not (folder / SEARCH).is_dir():
         return None
-    from basu.campaigns.search.report_section import search_section  # noqa: PLC0415 - scikit-learn, an extra
-
-    return search_section(folder, table, confidence)
+    return search_plugin().section(folder, table, confidence)
 
 
 def _summary(document: dict[str, Any], table: pa.Table) -> str:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from basu import plugins
 from basu.scenarios.cases import varied
 from basu.scenarios.variation import Variation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
-    from basu.campaigns.search.space import Space
+    import pyarrow as pa
+    from markupsafe import Markup
+
+    from basu.campaigns.plan import CampaignPlan
+    from basu.campaigns.search_space import Space
     from basu.campaigns.settings import Estimate, Search, Seeds
     from basu.scenarios.playable import Playable
 
@@ -116,3 +122,36 @@ class SearchPart:
             "space": [each._asdict() for each in self.space(strand)],
             "settings": self.settings.model_dump(mode="json"),
         }
+
+
+class SearchStates(Protocol):
+    """The state of every search of a campaign."""
+
+    def values(self, number: int) -> dict[str, float] | None:
+        """Return what a job's search has chosen; None while it has not, an empty dictionary for a job of no search."""
+
+    def count(self, row: Mapping[str, Any]) -> None:
+        """Take in a row of the table of drives."""
+
+
+class SearchPlugin(Protocol):
+    """What proposes the drives of searches and estimates: the entry point ``search`` of a plugin."""
+
+    def sizes(self, part: SearchPart) -> tuple[int, ...]:
+        """Return the number of drives in each round of a part's searches."""
+
+    def states(self, plan: CampaignPlan, folder: Path) -> SearchStates:
+        """Return the states of all searches of a campaign, which lie in its folder."""
+
+    def section(self, folder: Path, table: pa.Table, confidence: float) -> Markup:
+        """Return the section of a campaign's report on its searches and estimates."""
+
+
+def search_plugin() -> SearchPlugin:
+    """Return the plugin that proposes drives.
+
+    Raises:
+        UserError: it is not installed.
+    """
+    plugin: SearchPlugin = plugins.load(plugins.PARTS, "search", "a campaign with a search or an estimate")
+    return plugin

@@ -11,7 +11,7 @@ import traceback
 from typing import TYPE_CHECKING, NamedTuple
 
 import basu
-from basu import client_threads
+from basu import client_threads, plugins
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.home import replaced_home
 from basu.outcome import EXIT_CODES, Fault
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-class Command(NamedTuple):
+class OwnCommand(NamedTuple):
     """A command, and the module of this package that has it: ``add_NAME(parser)`` there adds its arguments."""
 
     module: str
@@ -31,18 +31,14 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
-    "run": Command("driving", "drive a route and score the drive"),
-    "scenario": Command("scenario", "list, play and draw traffic scenarios"),
-    "sumo": Command("driving", "show SUMO's traffic beside any client of a running simulator"),
-    "campaign": Command("campaign", "drive thousands of jobs from one file, and report on them"),
-    "score": Command("driving", "score a run again, from its folder alone"),
-    "report": Command("results", "write report.html of a run again, from its folder alone"),
-    "compare": Command("results", "put runs side by side"),
-    "experiment": Command("driving", "drive the thesis's test runs again"),
-    "metrics": Command("recordings", "run a metric of your own on a recording"),
-    "replay": Command("recordings", "play a run again"),
-    "ros": Command("ros", "ROS bags of runs, and runs of ROS bags"),
-    "list": Command("results", "show the agents and routes that come with BASU"),
+    "run": OwnCommand("driving", "drive a route and score the drive"),
+    "scenario": OwnCommand("scenario", "list, play and draw traffic scenarios"),
+    "campaign": OwnCommand("campaign", "drive thousands of jobs from one file, and report on them"),
+    "score": OwnCommand("driving", "score a run again, from its folder alone"),
+    "report": OwnCommand("results", "write report.html of a run again, from its folder alone"),
+    "compare": OwnCommand("results", "put runs side by side"),
+    "experiment": OwnCommand("driving", "drive the thesis's test runs again"),
+    "list": OwnCommand("results", "show the agents and routes that come with BASU"),
 }
 
 UNREAD = 141  # 128 + SIGPIPE, as shells have it
@@ -90,8 +86,10 @@ def _run(words: Sequence[str]) -> int:
 def parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The command line, with the arguments of the command that ``words`` begin with.
 
+    Plugins bring further commands. They are looked for where the command is none of our own.
+
     Raises:
-        UserError: there is no such command.
+        UserError: there is no such command, or the plugin that has it is not installed.
     """
     whole = Parser(prog="basu", description=basu.__doc__, epilog=EXIT_CODES)
     whole.add_argument("--version", action="version", version=f"basu {basu.__version__}")
@@ -103,13 +101,31 @@ def parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
     whole.set_defaults(command=show_help)  # without a command
     typed = next((word for word in words if not word.startswith("-")), None)
-    if typed is not None and typed not in COMMANDS:
-        raise UserError(f"there is no command '{typed}'; {suggestion(typed, COMMANDS)}")
     for name, command in COMMANDS.items():
         one = commands.add_parser(name, help=command.help)
         if name == typed:
             getattr(importlib.import_module(f"basu.cli.{command.module}"), f"add_{name}")(one)
+    if typed not in COMMANDS:
+        _add_plugins(commands, typed)
     return whole
+
+
+def _add_plugins(commands: argparse._SubParsersAction[Parser], typed: str | None) -> None:
+    """Add the commands of the installed plugins, and the arguments of the one that is typed.
+
+    Raises:
+        UserError: no command has this name, or the plugin that has it is not installed.
+    """
+    offered = plugins.offered(plugins.COMMANDS)
+    if typed is not None and typed not in offered:
+        if typed in plugins.DISTRIBUTIONS[plugins.COMMANDS]:
+            raise UserError(plugins.missing(plugins.COMMANDS, typed, f"`basu {typed}`"))
+        raise UserError(f"there is no command '{typed}'; {suggestion(typed, [*COMMANDS, *offered])}")
+    for name in offered:
+        command: plugins.Command = plugins.load(plugins.COMMANDS, name, f"`basu {name}`")
+        one = commands.add_parser(name, help=command.help)
+        if name == typed:
+            command.add(one)
 
 
 def _ignore_further_interruptions() -> None:

@@ -1,4 +1,4 @@
-"""Arguments of ``basu run``, ``experiment``, ``sumo`` and ``score``: the options of a drive and of its scoring."""
+"""Arguments of ``basu run``, ``experiment`` and ``score``: the options of a drive and of its scoring."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from pathlib import Path
 from basu.cli.later import later
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
-from basu.options.sumo import SUMO_DEMAND
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options
 
 SIMULATOR = ("host", "port", "timeout_s")  # the options that say where to drive
-OF_SUMO = ("sumo_radius_m", "sumo_lights", "sumo_port", "sumo_hour", "sumo_scale", "vehicles", "seed")
 
 
 def add_run(run: argparse.ArgumentParser) -> None:
@@ -34,28 +32,6 @@ def add_experiment(command: argparse.ArgumentParser) -> None:
     command.add_argument("name", choices=["thesis"], help="section 5.5: four agents on the short route")
     add_options(command, RunOptions, only=(*SIMULATOR, "seed", "output"))
     command.set_defaults(command=later("basu.cli.experiment:run"))
-
-
-def add_sumo(sumo: argparse.ArgumentParser) -> None:
-    """Add the arguments of ``basu sumo``."""
-    sumo.description = (
-        "Show SUMO's traffic in a running simulator, in step with any program that ticks there; Ctrl+C ends it."
-    )
-    sumo.epilog = EXIT_CODES
-    sumo.add_argument(
-        "what",
-        nargs="?",
-        default=SUMO_DEMAND,
-        metavar="WHAT",
-        help="FILE.sumocfg, random (--vehicles N on random trips) or demand (of the town) (default: %(default)s)",
-    )
-    add_options(sumo, RunOptions, only=(*SIMULATOR, *OF_SUMO))
-    sumo.add_argument("--tick", action="store_true", help="make the ticks: no other client does")
-    sumo.add_argument(
-        "--step", type=float, default=0.05, metavar="S", help="of SUMO, and of the ticks, in s (default: %(default)s)"
-    )
-    sumo.add_argument("--for", type=float, dest="limit", metavar="S", help="end after this simulated time, in s")
-    sumo.set_defaults(command=later("basu.cli.sumo:run"))
 
 
 def add_score(score: argparse.ArgumentParser) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from basu.agents.loader import BUILT_IN
+from basu.agents.loader import names
 from basu.files import PACKAGE_FOLDER
 from basu.routing.route_file import read_routes
 
@@ -12,7 +12,7 @@ from basu.routing.route_file import read_routes
 def run(_arguments: argparse.Namespace) -> int:
     """Show the agents and routes that come with BASU."""
     print("agents:")
-    for name in BUILT_IN:
+    for name in names():
         print(f"  {name}")
     print("routes:")
     for path in sorted((PACKAGE_FOLDER / "routes").glob("*.xml")):

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 
 from basu.cli.termination import terminated_as_interrupted
-from basu.cli.typed_options import check_extras, config_of, options_of, scoring_of
+from basu.cli.typed_options import config_of, options_of, scoring_of
 from basu.metrics.registry import user_metrics
 from basu.options.run import RunOptions
+from basu.running.outputs import check_outputs
 from basu.simulator import started_early
 
 
@@ -15,7 +16,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Drive an agent along its route, faster than real time, and write a scored run folder."""
     config = config_of(arguments, "run", RunOptions)
     options = options_of(RunOptions, arguments, config.options)
-    check_extras(options)
+    check_outputs(options)
     scoring = scoring_of(arguments, config.scoring)
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
     with terminated_as_interrupted(), started_early(options.simulator, options.workers):

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from basu.cli.termination import terminated_as_interrupted
-from basu.cli.typed_options import check_extras, config_of, options_of, scoring_of
+from basu.cli.typed_options import config_of, options_of, scoring_of
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.output.report.documents import CONFIG_FILE
+from basu.running.outputs import check_outputs
 from basu.running.scenario_runs.command import run_scenarios
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.running.series import changes
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
         if config.warnings:
             raise UserError(f"{resumed} cannot go on: {'; '.join(config.warnings)}; begin another run")
         _check_unchanged(resumed, options, scoring, config.options.values)
-    check_extras(options)
+    check_outputs(options)
     with terminated_as_interrupted():
         return run_scenarios(options, scoring, resumed)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from basu.extras import CYCLONEDDS, RERUN, ROSBAGS, require
 from basu.metrics.scoring import Scoring, read_scoring_file
 from basu.settings.command_line import typed
 from basu.settings.document import Config, read_config
@@ -15,7 +14,6 @@ from basu.settings.resolve import Model, resolve
 if TYPE_CHECKING:
     import argparse
 
-    from basu.options.drive import DriveOptions
     from basu.settings.option import Settings
 
 
@@ -50,21 +48,3 @@ def config_of(arguments: argparse.Namespace, kind: str, model: type[Settings]) -
     for difference in config.warnings:
         print(f"basu: warning: {difference}; the run may differ from that of {arguments.config}", file=sys.stderr)
     return config
-
-
-def check_extras(options: DriveOptions) -> None:
-    """Check that what the options need is installed, and that a roscore answers where one is needed.
-
-    Raises:
-        UserError: something is missing.
-    """
-    if options.viewer:
-        require(RERUN)
-    if options.ros2:
-        require(CYCLONEDDS)
-    if options.is_ros:
-        require(ROSBAGS)
-    if options.ros1:
-        from basu.ros.ros1 import require_roscore  # noqa: PLC0415 - rosbags, an extra
-
-        require_roscore()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
+from basu import plugins
 from basu.episode.failures import outcome_of
 from basu.episode.world import Towns, asking, next_frame, ticked_by_us, vehicle_at_start
 from basu.errors import (
@@ -22,13 +23,12 @@ from basu.errors import (
     UserError,
 )
 from basu.managers import Live
-from basu.managers.base_manager import BaseManager, Driver, Frame, Run, WorldChanges
+from basu.managers.base_manager import BaseManager, CoSimulation, Driver, Frame, Run, WorldChanges
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
-from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.outcome import Outcome, Status
 from basu.routing import plan
@@ -37,6 +37,7 @@ from basu.simulator import linden_command
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from basu.conditions import Sumo
     from basu.episode.spec import EpisodeSpec
     from basu.episode.world import Town
     from basu.managers.scenario_manager import Playing
@@ -83,7 +84,7 @@ class _Managers(NamedTuple):
     routes: RoutesManager
     metrics: MetricsManager
     traffic: TrafficManager
-    sumo: SumoManager | None
+    sumo: CoSimulation | None
     sensors: SensorsManager
     observers: tuple[BaseManager, ...]
 
@@ -215,7 +216,7 @@ class Episode:
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic, self._reserved_m(run, ground))
-        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command(), routes)
+        sumo = None if self._spec.sumo is None else _cosimulation(self._spec.sumo, routes)
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
         self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
         # participants before sensors: another program's agent says only once it is set up what it wants to sense
@@ -363,3 +364,13 @@ class Episode:
     def playing(self) -> Sequence[Playing]:
         """The scenarios of the drive."""
         return () if self.ground is None else self.ground.scenarios.playing
+
+
+def _cosimulation(sumo: Sumo, routes: RoutesManager) -> CoSimulation:
+    """Return the manager of SUMO's traffic, which a plugin brings.
+
+    Raises:
+        UserError: the plugin is not installed.
+    """
+    made: CoSimulation = plugins.load(plugins.PARTS, "sumo", "SUMO's traffic")(sumo, linden_command(), routes)
+    return made

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from basu.agents.autonomous_agent import AgentConfig
-    from basu.agents.manual.inputs import Person
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.conditions import Track
     from basu.managers.base_manager import Frame, Run
+    from basu.managers.person import Person
     from basu.routing.route_file import RoutePoint
 
 

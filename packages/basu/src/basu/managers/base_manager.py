@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.autonomous_agent import AgentConfig
-    from basu.agents.manual.inputs import Person
     from basu.agents.process.gate import Gate
     from basu.managers.observations import Neighbours
+    from basu.managers.person import Person
+    from basu.records.history.sumo import SumoRecord
     from basu.routing import Route
     from basu.routing.weather import WeatherMark
 
@@ -106,3 +107,13 @@ class BaseManager(ABC):
     @abstractmethod
     def close(self) -> None:
         """Give back what ``setup`` took; called after a failed ``setup`` too, and never raises for what was lost."""
+
+
+class CoSimulation(BaseManager):
+    """Another program's traffic in the world of a run. ``count`` says how many of its road users there were."""
+
+    count: dict[str, int]
+
+    @abstractmethod
+    def record(self) -> SumoRecord | None:
+        """Return its part of the record until now; None where it has not begun."""

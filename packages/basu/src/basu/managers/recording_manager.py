@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
-from basu.records.carla_log.sources import MAP_FILE
+from basu.records.recording_files import MAP_FILE
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run

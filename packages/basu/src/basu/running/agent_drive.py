@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from basu.episode import Episode
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.sensors_manager import SensorsManager
-from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
-from basu.records.carla_log.sources import LOG_FILE
+from basu.records.recording_files import LOG_FILE
 from basu.running.drive import drive
+from basu.running.outputs import Drive, output_managers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,19 +102,5 @@ class AgentDrive:
             here = str((self.episode.run.folder / LOG_FILE).resolve())
             self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
             found.append(self._recording)
-        return [*found, *_onlookers(self._options, live, self._agent, quiet=self._quiet)]
-
-
-def _onlookers(options: DriveOptions, live: Live, agent: str, *, quiet: bool) -> list[BaseManager]:
-    """The managers that show the run: the window with its keys, Rerun's viewer, and ROS."""
-    say = (lambda _: None) if quiet else print
-    found: list[BaseManager] = [*onlookers_for(options, live, agent)]
-    if options.viewer:
-        from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
-
-        found.append(ViewerManager(live, print))
-    if options.is_ros:
-        from basu.output.ros.run_managers import ros_managers  # noqa: PLC0415 - rosbags, an extra
-
-        found += ros_managers(options, live, say)
-    return found
+        say = (lambda _: None) if self._quiet else print
+        return [*found, *output_managers(self._options, Drive(live, self._agent, say))]

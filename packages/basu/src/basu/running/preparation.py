@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu import plugins
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
@@ -19,11 +20,10 @@ from basu.episode.world import weather_called
 from basu.errors import AgentCrashedError, UserError
 from basu.files import PACKAGE_FOLDER, find, places
 from basu.managers.agents_manager import AgentsManager
+from basu.managers.person import person_for
 from basu.options.sumo import SUMO_OFF
-from basu.output.hud.person_input import person_for
 from basu.routing.route_file import OWN_ROUTE, RouteDescription, read_routes, subset
 from basu.scenarios.route_scenarios import scenarios_on
-from basu.sumo.link import INSTALL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -105,10 +105,10 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
         print(f"basu: hint: {hint}", file=sys.stderr)
     wants_sumo = options.sumo not in (None, SUMO_OFF) or options.sumo_port is not None
     if wants_sumo and not _has_sumo():
-        raise UserError(INSTALL)
+        raise UserError(_sumo_is_missing())
     if config.sumo is not None and options.sumo is None and not _has_sumo():
-        print(f"basu: warning: {loaded.name} asks for SUMO's traffic, and {INSTALL}; the run goes on without it",
-              file=sys.stderr)  # fmt: skip
+        wish = f"{loaded.name} asks for SUMO's traffic, and {_sumo_is_missing()}"
+        print(f"basu: warning: {wish}; the run goes on without it", file=sys.stderr)
     path, is_own = _route_file(config, options, loaded)
     routes = _chosen(read_routes(path), config, options)
     waiting = {route.id: _scenarios(route, options) for route in routes}
@@ -184,8 +184,13 @@ def sumo_folder(config: AgentConfig) -> str | None:
 
 
 def _has_sumo() -> bool:
-    """Whether SUMO is installed; it is not loaded for that."""
-    return importlib.util.find_spec("libsumo") is not None
+    """Whether SUMO and the plugin for it are installed; they are not loaded for that."""
+    return plugins.is_installed(plugins.PARTS, "sumo") and importlib.util.find_spec("libsumo") is not None
+
+
+def _sumo_is_missing() -> str:
+    """Return the sentence for a user without SUMO."""
+    return plugins.missing(plugins.PARTS, "sumo", "SUMO's traffic")
 
 
 def _chosen(

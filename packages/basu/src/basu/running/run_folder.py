@@ -14,8 +14,8 @@ from basu.options.run import RunOptions
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json
 from basu.output.report.streets import around, write_streets
-from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
+from basu.records.recording_files import LOG_FILE
 from basu.settings.command_line import words_of
 from basu.settings.document import RUN, config_document
 from basu.settings.option import fields_of

@@ -8,10 +8,9 @@ from dataclasses import replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.agents.manual.session import read_session
 from basu.episode import Towns
 from basu.errors import SimulatorError, UserError
-from basu.files import find
+from basu.files import find, read_json
 from basu.metrics.infraction import Infraction
 from basu.metrics.score import driving_score
 from basu.outcome import Fault, Status
@@ -165,7 +164,7 @@ def thesis(options: RunOptions) -> int:
             print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
             folders.append(_drive(case, replace(options, output=folder), simulator, towns))
             ours[case.row] = _row(folders[-1])
-    by = read_session(find(KEYS, "session of keys")).by
+    by = read_json(find(KEYS, "session of keys"), "the session of keys")["by"]
     explained = differences(PRINTED, ours, by)
     written = compare(folders, folder, in_page(PRINTED, ours, explained))
     print(f"\n{text(PRINTED, ours)}\n")

@@ -9,7 +9,7 @@ the passed part of all cases of the suite, over all nine groups; what was not ex
 not judged counts as not passed. Absence from a conflict cannot raise the second figure, and no fault can.
 
 Intervals are those of a weighted rate at 95 % (`basu.intervals.weighted`). They cover the number of cases alone.
-`tests/basu/scenarios/test_share_coverage.py` holds how often they cover.
+`packages/basu/tests/scenarios/test_share_coverage.py` holds how often they cover.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ def test_the_arrow_table_is_made_without_pandas() -> None:
         "import sys; from fakes.drives import at, driven, hit; from basu.records.history.tables import to_arrow; "
         "print(to_arrow(driven(at(5.0, 1.0), collisions=[hit(3)])).num_rows > 0, 'pandas' in sys.modules)"
     )
-    path = os.pathsep.join([str(Path(__file__).parents[3]), *sys.path])
+    path = os.pathsep.join([str(Path(__file__).parents[5] / "tests"), *sys.path])
     done = subprocess.run(
         [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=True
     )

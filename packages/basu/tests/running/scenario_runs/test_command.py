@@ -221,7 +221,7 @@ def test_an_agent_that_breaks_down_is_its_own_fault_and_the_next_case_is_played(
 def test_a_process_that_dies_costs_its_own_case_only(
     files: Path, tmp_path: Path, kills: Callable[[str, str], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is not tried again here: tests/basu/jobs/test_pool.py has the tries."""
+    """It is not tried again here: packages/basu/tests/jobs/test_pool.py has the tries."""
     monkeypatch.setattr(batch, "play_jobs", partial(play_jobs, attempts=1))
     bad = tmp_path / "bad.py"
     deed = kills(BENCHMARK, "signal.SIGKILL")

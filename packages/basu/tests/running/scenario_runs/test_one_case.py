@@ -13,7 +13,7 @@ from basu.scenarios.stage import Pose
 from basu.scenarios.xml_elements import Case, GivenActor
 from fakes.crossing_map import crossing
 
-ROOT = Path(__file__).parents[4]
+ROOT = Path(__file__).parents[5]
 
 
 @pytest.fixture(name="town", scope="module")

@@ -31,7 +31,7 @@ class TopSpeed(Metric):
         return float(drive.history.speed_mps().max())
 '''
 LOG_METRIC = """
-from basu.records.carla_log.metric_file import BasicMetric
+from basu_carla_log.metric_file import BasicMetric
 
 
 class Ended(BasicMetric):

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.aisan.draft import Draft
-from linden.authoring.aisan.furniture import add_furniture
-from linden.authoring.aisan.lanes import Course, curvatures, headings, junction_flag
-from linden.authoring.aisan.tables import STRAIGHT_R, Tables
-from linden.authoring.lanelet2.model import LaneletMap
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.aisan.draft import Draft
+from linden_maps.aisan.furniture import add_furniture
+from linden_maps.aisan.lanes import Course, curvatures, headings, junction_flag
+from linden_maps.aisan.tables import STRAIGHT_R, Tables
+from linden_maps.lanelet2.model import LaneletMap
 
 _LANE_TYPES = {"straight": 0, "left": 1, "right": 2}
 _DEFAULT_KMH = 50

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from linden.authoring.aisan.lanes import courses_of, graph_of
-from linden.authoring.aisan.points import Points
-from linden.authoring.aisan.tables import Tables
-from linden.authoring.lanelet2.model import LaneletMap
-from linden.authoring.lanelet2.projection import NOWHERE, projection_of
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.aisan.lanes import courses_of, graph_of
+from linden_maps.aisan.points import Points
+from linden_maps.aisan.tables import Tables
+from linden_maps.lanelet2.model import LaneletMap
+from linden_maps.lanelet2.projection import NOWHERE, projection_of
 
 
 class Draft:

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from linden.authoring.aisan.draft import Draft
-from linden.authoring.lanelet2.model import Relation, bounds_of
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.aisan.draft import Draft
+from linden_maps.lanelet2.model import Relation, bounds_of
 
 _PAINT_M = 0.12
 _DASH_M, _GAP_M = 3.05, 9.14  # 10 and 30 ft: MUTCD 2009, section 3A.06

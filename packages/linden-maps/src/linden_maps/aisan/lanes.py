@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.model import Bounds, LaneletMap, bounds_of
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.lanelet2.model import Bounds, LaneletMap, bounds_of
 
 STEP_M = 1.0
 """Length of a row, as in towns of Autoware's own maps."""

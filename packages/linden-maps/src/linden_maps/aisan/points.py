@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from linden.authoring.aisan.tables import Tables
-from linden.authoring.lanelet2.model import LaneletMap
-from linden.authoring.lanelet2.projection import Projection
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.aisan.tables import Tables
+from linden_maps.lanelet2.model import LaneletMap
+from linden_maps.lanelet2.projection import Projection
 
 
 class Points:

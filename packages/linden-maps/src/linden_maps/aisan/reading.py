@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.aisan.tables import COLUMNS
 from linden.errors import UserError
+from linden_maps.aisan.tables import COLUMNS
 
 Folder = dict[str, NDArray[np.float64]]
 

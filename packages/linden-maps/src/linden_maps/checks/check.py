@@ -1,13 +1,13 @@
 """``check`` runs all checks on an OpenDRIVE map in a fixed order and returns the findings."""
 
-from linden.authoring.checks.finding import Finding, Severity
-from linden.authoring.checks.joints import lane_joints, road_joints
-from linden.authoring.checks.lane_links import junctions, lane_ends, lane_links_returned, road_links
-from linden.authoring.checks.missing_facts import georeference, lane_changes, speed_limits
-from linden.authoring.checks.overlaps import overlaps, raised_ground
-from linden.authoring.checks.shape import grades, lane_widths, profiles, reference_lines
-from linden.authoring.checks.signals import controllers, objects, signals
 from linden.maps.opendrive.model import OpenDrive
+from linden_maps.checks.finding import Finding, Severity
+from linden_maps.checks.joints import lane_joints, road_joints
+from linden_maps.checks.lane_links import junctions, lane_ends, lane_links_returned, road_links
+from linden_maps.checks.missing_facts import georeference, lane_changes, speed_limits
+from linden_maps.checks.overlaps import overlaps, raised_ground
+from linden_maps.checks.shape import grades, lane_widths, profiles, reference_lines
+from linden_maps.checks.signals import controllers, objects, signals
 
 __all__ = ["Finding", "Severity", "check"]
 

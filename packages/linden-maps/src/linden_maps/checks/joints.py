@@ -4,7 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.checks.finding import (
+from linden.maps.opendrive.evaluate.pieces import F64, I64
+from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.links import lane_links
+from linden.maps.opendrive.model import OpenDrive, RoadLink
+from linden_maps.checks.finding import (
     GAP_M,
     KINK_DEG,
     STEP_M,
@@ -13,10 +17,6 @@ from linden.authoring.checks.finding import (
     on_road,
     worst_of_each,
 )
-from linden.maps.opendrive.evaluate.pieces import F64, I64
-from linden.maps.opendrive.evaluate.tables import Tables, tables_of
-from linden.maps.opendrive.links import lane_links
-from linden.maps.opendrive.model import OpenDrive, RoadLink
 
 
 class _Ends(NamedTuple):

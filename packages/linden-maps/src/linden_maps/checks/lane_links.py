@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from linden.authoring.checks.finding import Finding, Severity, on_road
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.links import is_forward, lane_links
 from linden.maps.opendrive.model import Connection, Junction, LaneSection, OpenDrive, Road, RoadLink
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.finding import Finding, Severity, on_road
 
 _VANISHING_M = 0.5  # a lane that has tapered to less than this may end
 

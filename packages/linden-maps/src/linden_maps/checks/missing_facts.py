@@ -1,10 +1,10 @@
 """Checks for missing data: readable georeference, speed limits of driving lanes, ``laneChange`` of road marks."""
 
-from linden.authoring.checks.finding import Finding, Severity, on_road
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.georeference import DEFAULT_LATITUDE_DEG, DEFAULT_LONGITUDE_DEG, read_origin
 from linden.maps.opendrive.model import OpenDrive, Road
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.finding import Finding, Severity, on_road
 
 
 def georeference(opendrive: OpenDrive) -> list[Finding]:

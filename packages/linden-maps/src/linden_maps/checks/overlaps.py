@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import STRtree, box
 
-from linden.authoring.checks.finding import KERB_REACH_M, LAYER_M, OVERLAP_M, Finding, Severity, worst_of_each
 from linden.maps.opendrive.evaluate.pieces import F64, I64
 from linden.maps.opendrive.mesh import RoadMesh, road_mesh
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.finding import KERB_REACH_M, LAYER_M, OVERLAP_M, Finding, Severity, worst_of_each
 
 _AT_ONCE = 20_000  # triangles, for the memory that pairs need
 

@@ -4,7 +4,10 @@ import math
 
 import numpy as np
 
-from linden.authoring.checks.finding import (
+from linden.maps.opendrive.evaluate.pieces import Pieces
+from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.model import Lane, LaneSection, OpenDrive
+from linden_maps.checks.finding import (
     GAP_M,
     JUMP_M,
     KINK_DEG,
@@ -14,9 +17,6 @@ from linden.authoring.checks.finding import (
     Severity,
     on_road,
 )
-from linden.maps.opendrive.evaluate.pieces import Pieces
-from linden.maps.opendrive.evaluate.tables import Tables, tables_of
-from linden.maps.opendrive.model import Lane, LaneSection, OpenDrive
 
 
 def reference_lines(opendrive: OpenDrive) -> list[Finding]:

@@ -3,14 +3,6 @@
 import math
 from collections import Counter
 
-from linden.authoring.checks.finding import (
-    CLOSURE_M,
-    SIGNAL_REACH_M,
-    SIGNAL_SHIFT_M,
-    Finding,
-    Severity,
-    on_road,
-)
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.landmarks import landmark_transforms, unmoved_transforms
 from linden.maps.opendrive.model import OpenDrive, Road
@@ -23,6 +15,14 @@ from linden.maps.opendrive.roadside import (
 )
 from linden.maps.opendrive.signals import place
 from linden.maps.records import PlacedSignal
+from linden_maps.checks.finding import (
+    CLOSURE_M,
+    SIGNAL_REACH_M,
+    SIGNAL_SHIFT_M,
+    Finding,
+    Severity,
+    on_road,
+)
 
 _GUARDING_TYPES = {STOP_SIGN_TYPE, YIELD_SIGN_TYPE}
 

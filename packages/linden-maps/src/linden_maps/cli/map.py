@@ -4,8 +4,8 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.cli.argument_types import angle, count, not_negative, positive
-from linden.cli.later import later
+from linden_maps.cli.argument_types import angle, count, not_negative, positive
+from linden_maps.cli.later import later
 
 
 def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -14,7 +14,7 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     actions = maps.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for name, (add_arguments, text) in _COMMANDS.items():
         parser = actions.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        parser.set_defaults(command=later(f"linden.cli.map_{name}:run", "maps"))
+        parser.set_defaults(command=later(f"linden_maps.cli.map_{name}:run"))
         add_arguments(parser)
 
 

@@ -9,18 +9,18 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.authoring.openstreetmap.convert import Imported, convert
-from linden.authoring.output import write_output
-from linden.authoring.streets.build import Built, assembled, off_ground_m
-from linden.authoring.streets.controls import without_lights
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.levels import LEVEL_M
-from linden.authoring.streets.routes import xml
-from linden.authoring.streets.terrain import with_terrain
-from linden.authoring.streets.writing import text as written
-from linden.cli.map_files import bytes_of
-from linden.cli.output import say
 from linden.errors import UserError
+from linden_maps.cli.map_files import bytes_of
+from linden_maps.cli.output import say
+from linden_maps.openstreetmap.convert import Imported, convert
+from linden_maps.output import write_output
+from linden_maps.streets.build import Built, assembled, off_ground_m
+from linden_maps.streets.controls import without_lights
+from linden_maps.streets.geojson import read
+from linden_maps.streets.levels import LEVEL_M
+from linden_maps.streets.routes import xml
+from linden_maps.streets.terrain import with_terrain
+from linden_maps.streets.writing import text as written
 
 _HOME_STREETS = "linden.geojson"
 

@@ -3,15 +3,15 @@
 import argparse
 from pathlib import Path
 
-from linden.authoring.aisan.reading import complaints, read_folder
-from linden.authoring.checks.check import Severity
-from linden.authoring.checks.check import check as findings_of
-from linden.authoring.lanelet2.checking import compare, reach
-from linden.authoring.lanelet2.osm import read_osm
-from linden.authoring.lanelet2.second_reader import routes_of
-from linden.cli.map_files import bytes_of
-from linden.cli.map_source import opendrive_of
-from linden.cli.output import number, say
+from linden_maps.aisan.reading import complaints, read_folder
+from linden_maps.checks.check import Severity
+from linden_maps.checks.check import check as findings_of
+from linden_maps.cli.map_files import bytes_of
+from linden_maps.cli.map_source import opendrive_of
+from linden_maps.cli.output import number, say
+from linden_maps.lanelet2.checking import compare, reach
+from linden_maps.lanelet2.osm import read_osm
+from linden_maps.lanelet2.second_reader import routes_of
 
 
 def run(arguments: argparse.Namespace) -> int:

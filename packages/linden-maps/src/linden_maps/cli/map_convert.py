@@ -4,22 +4,22 @@ import argparse
 import time
 from pathlib import Path
 
-from linden.authoring.aisan.convert import convert as aisan_of
-from linden.authoring.aisan.reading import complaints, read_folder
-from linden.authoring.lanelet2.bounds import STATED_ERROR_M
-from linden.authoring.lanelet2.bus_stops import Stop, shuttle_stops
-from linden.authoring.lanelet2.convert import UNKNOWN_SPEED_KMH, Converted, Wanted, convert, counts
-from linden.authoring.lanelet2.model import LaneletMap, without_lanelets
-from linden.authoring.lanelet2.osm import osm_bytes, projector_info, read_osm
-from linden.authoring.lanelet2.shared import NEAR_M
-from linden.authoring.lanelet2.stretches import WALKWAY
-from linden.authoring.output import write_file, write_folder
-from linden.authoring.sumo.bus_stops import read_stops
-from linden.cli.map_files import bytes_of, is_built_in
-from linden.cli.map_source import opendrive_of
-from linden.cli.output import say
 from linden.errors import UserError
 from linden.maps.opendrive.model import OpenDrive
+from linden_maps.aisan.convert import convert as aisan_of
+from linden_maps.aisan.reading import complaints, read_folder
+from linden_maps.cli.map_files import bytes_of, is_built_in
+from linden_maps.cli.map_source import opendrive_of
+from linden_maps.cli.output import say
+from linden_maps.lanelet2.bounds import STATED_ERROR_M
+from linden_maps.lanelet2.bus_stops import Stop, shuttle_stops
+from linden_maps.lanelet2.convert import UNKNOWN_SPEED_KMH, Converted, Wanted, convert, counts
+from linden_maps.lanelet2.model import LaneletMap, without_lanelets
+from linden_maps.lanelet2.osm import osm_bytes, projector_info, read_osm
+from linden_maps.lanelet2.shared import NEAR_M
+from linden_maps.lanelet2.stretches import WALKWAY
+from linden_maps.output import write_file, write_folder
+from linden_maps.sumo.bus_stops import read_stops
 
 _PROJECTOR = "map_projector_info.yaml"
 

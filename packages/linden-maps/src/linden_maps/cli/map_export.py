@@ -2,13 +2,13 @@
 
 import argparse
 
-from linden.authoring.gltf import glb
-from linden.authoring.output import write_output
-from linden.cli.map_source import world_map_of
-from linden.cli.output import say
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
+from linden_maps.cli.map_source import world_map_of
+from linden_maps.cli.output import say
+from linden_maps.gltf import glb
+from linden_maps.output import write_output
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+import linden
 from linden.errors import UserError
 
-_PACKAGED = Path(__file__).parent.parent / "data"
+_PACKAGED = Path(linden.__file__).parent / "data"
 
 
 def bytes_of(path: Path) -> bytes:

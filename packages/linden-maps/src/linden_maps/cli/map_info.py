@@ -2,9 +2,9 @@
 
 import argparse
 
-from linden.authoring.statistics import count, named_places
-from linden.cli.map_source import opendrive_of
-from linden.cli.output import say
+from linden_maps.cli.map_source import opendrive_of
+from linden_maps.cli.output import say
+from linden_maps.statistics import count, named_places
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -2,8 +2,8 @@
 
 import argparse
 
-from linden.cli.map_files import built_in_maps
-from linden.cli.output import say
+from linden_maps.cli.map_files import built_in_maps
+from linden_maps.cli.output import say
 
 
 def run(_arguments: argparse.Namespace) -> int:

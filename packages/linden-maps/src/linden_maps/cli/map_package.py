@@ -4,23 +4,23 @@ import argparse
 import shutil
 from pathlib import Path
 
-from linden.authoring import autoware_folder as folder
-from linden.authoring.aisan.convert import convert as aisan_of
-from linden.authoring.lanelet2.convert import convert
-from linden.authoring.lanelet2.osm import osm_bytes, projector_info
-from linden.authoring.output import staged_folder
-from linden.authoring.unreal.package import names_of, write_package
-from linden.authoring.unreal.parts import parts_of
-from linden.cli import map_convert, map_pointcloud
-from linden.cli.map import add_pointcloud
-from linden.cli.map_files import content_of
-from linden.cli.map_source import parsed, world_map_of
-from linden.cli.output import say, say_step
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
+from linden_maps import autoware_folder as folder
+from linden_maps.aisan.convert import convert as aisan_of
+from linden_maps.cli import map_convert, map_pointcloud
+from linden_maps.cli.map import add_pointcloud
+from linden_maps.cli.map_files import content_of
+from linden_maps.cli.map_source import parsed, world_map_of
+from linden_maps.cli.output import say, say_step
+from linden_maps.lanelet2.convert import convert
+from linden_maps.lanelet2.osm import osm_bytes, projector_info
+from linden_maps.output import staged_folder
+from linden_maps.unreal.package import names_of, write_package
+from linden_maps.unreal.parts import parts_of
 
 _STEPS = (
     "lanelets of the streets",

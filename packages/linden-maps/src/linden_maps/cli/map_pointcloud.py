@@ -8,13 +8,6 @@ from typing import NamedTuple
 
 from tqdm import tqdm
 
-from linden.authoring.pointcloud.cloud import Scan
-from linden.authoring.pointcloud.drive import Lidar, drive, places_along
-from linden.authoring.pointcloud.merge import merge, working_folder
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
-from linden.authoring.pointcloud.scan_folder import kept_scans, recorded
-from linden.cli.map_source import world_map_of
-from linden.cli.output import say
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 from linden.maps.cache import MapCache
@@ -22,6 +15,13 @@ from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh_cache import standing_of
 from linden.sensors.casting.choose import caster_of, check_device
 from linden.simulation.surroundings import scenery_of
+from linden_maps.cli.map_source import world_map_of
+from linden_maps.cli.output import say
+from linden_maps.pointcloud.cloud import Scan
+from linden_maps.pointcloud.drive import Lidar, drive, places_along
+from linden_maps.pointcloud.merge import merge, working_folder
+from linden_maps.pointcloud.pcd_writing import PcdWriter
+from linden_maps.pointcloud.scan_folder import kept_scans, recorded
 
 _DEFAULT_MAP = "Linden"
 _QUIET_S = 10.0  # between two lines of the bar where the output is no terminal (a log file)

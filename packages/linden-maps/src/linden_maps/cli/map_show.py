@@ -3,14 +3,14 @@
 import argparse
 from pathlib import Path
 
-from linden.authoring.aisan.reading import read_folder
-from linden.authoring.drawing.svg import svg
-from linden.authoring.drawing.vector_maps import Window, aisan_svg, lanelet2_svg
-from linden.authoring.output import write_output
-from linden.cli.map_convert import lanelets_of
-from linden.cli.map_source import opendrive_of
-from linden.cli.output import say
 from linden.errors import UserError
+from linden_maps.aisan.reading import read_folder
+from linden_maps.cli.map_convert import lanelets_of
+from linden_maps.cli.map_source import opendrive_of
+from linden_maps.cli.output import say
+from linden_maps.drawing.svg import svg
+from linden_maps.drawing.vector_maps import Window, aisan_svg, lanelet2_svg
+from linden_maps.output import write_output
 
 
 def run(arguments: argparse.Namespace) -> int:

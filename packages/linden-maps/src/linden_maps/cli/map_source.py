@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from linden.cli.map_files import content_of
 from linden.errors import UserError
 from linden.maps.cache import MapCache
 from linden.maps.library import LoadedMap
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.parse import parse
+from linden_maps.cli.map_files import content_of
 
 
 def opendrive_of(name: str) -> OpenDrive:

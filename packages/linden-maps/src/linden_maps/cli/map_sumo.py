@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from linden.authoring.sumo.bus_stops import read_stops
-from linden.authoring.sumo.check import compare
-from linden.authoring.sumo.demand import Demand
-from linden.authoring.sumo.folder import write_folder
-from linden.cli.map_files import content_of
-from linden.cli.output import say
+from linden_maps.cli.map_files import content_of
+from linden_maps.cli.output import say
+from linden_maps.sumo.bus_stops import read_stops
+from linden_maps.sumo.check import compare
+from linden_maps.sumo.demand import Demand
+from linden_maps.sumo.folder import write_folder
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,7 +6,10 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from linden.authoring.drawing.style import (
+from linden.maps.opendrive.evaluate.tables import Tables
+from linden.maps.opendrive.model import OpenDrive
+from linden.protocol.values.enums import LaneType
+from linden_maps.drawing.style import (
     BUILDING,
     GREEN,
     INK,
@@ -19,10 +22,7 @@ from linden.authoring.drawing.style import (
     YELLOW,
     group,
 )
-from linden.authoring.statistics import is_building, is_railroad
-from linden.maps.opendrive.evaluate.tables import Tables
-from linden.maps.opendrive.model import OpenDrive
-from linden.protocol.values.enums import LaneType
+from linden_maps.statistics import is_building, is_railroad
 
 _NAME_SPACING_M = 350.0  # between two names of one street
 _LETTER_M = 0.55  # of the font's size: mean width of a letter

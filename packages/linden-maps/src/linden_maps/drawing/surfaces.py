@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.drawing.style import ASPHALT, OTHER_SURFACE, PAINT, SURFACES, YELLOW, group, path
 from linden.geometry import points_from_opendrive
 from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import RoadMark
 from linden.protocol.values.enums import LaneType
+from linden_maps.drawing.style import ASPHALT, OTHER_SURFACE, PAINT, SURFACES, YELLOW, group, path
 
 Corners = NDArray[np.float64]  # (N, 2), m, CARLA's frame, which is SVG's: x to the right, y down
 

@@ -1,14 +1,14 @@
 """Draws a map as SVG: north up, one unit a metre, x and y as in CARLA, so a place can be read off with a pointer."""
 
-from linden.authoring.drawing.labels import frame, street_names
-from linden.authoring.drawing.style import GRASS
-from linden.authoring.drawing.surfaces import marks, surfaces
-from linden.authoring.drawing.symbols import objects, signals, spawn_marks
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.signals import place
 from linden.maps.opendrive.spawn_points import spawn_points
+from linden_maps.drawing.labels import frame, street_names
+from linden_maps.drawing.style import GRASS
+from linden_maps.drawing.surfaces import marks, surfaces
+from linden_maps.drawing.symbols import objects, signals, spawn_marks
 
 _MARGIN = 0.04  # of the longer side
 _LONGER_SIDE_PX = 1800

@@ -7,12 +7,12 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.drawing.style import BUILDING, GREEN, INK, PAINT, RAILROAD, RED, SPAWN, YELLOW, group, points
-from linden.authoring.statistics import is_building, is_railroad
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, RoadObject
 from linden.maps.records import PlacedSignal
 from linden.protocol.values.space import Transform
+from linden_maps.drawing.style import BUILDING, GREEN, INK, PAINT, RAILROAD, RED, SPAWN, YELLOW, group, points
+from linden_maps.statistics import is_building, is_railroad
 
 _PLACE_NAME_M = 5.0
 _SIGN_M = 1.1  # half a sign's size on the picture; true ones would be specks

@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.aisan.reading import Folder
-from linden.authoring.aisan.tables import COLUMNS
-from linden.authoring.drawing.style import ASPHALT, GRASS, GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, path
-from linden.authoring.drawing.surfaces import marks, surfaces
-from linden.authoring.lanelet2.model import LaneletMap, Way, bounds_of
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.model import OpenDrive
+from linden_maps.aisan.reading import Folder
+from linden_maps.aisan.tables import COLUMNS
+from linden_maps.drawing.style import ASPHALT, GRASS, GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, path
+from linden_maps.drawing.surfaces import marks, surfaces
+from linden_maps.lanelet2.model import LaneletMap, Way, bounds_of
 
 F64 = NDArray[np.float64]
 

@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.movements import LIGHT, STOP, YIELD
-from linden.authoring.lanelet2.outlines import outline_of
-from linden.authoring.lanelet2.stretches import ROAD, Network, Stretch
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.opendrive.signals import place
 from linden.maps.records import PlacedSignal
+from linden_maps.lanelet2.movements import LIGHT, STOP, YIELD
+from linden_maps.lanelet2.outlines import outline_of
+from linden_maps.lanelet2.stretches import ROAD, Network, Stretch
 
 _SET_BACK_M = 0.5
 """How far before a junction the stop line lies where none is painted."""

@@ -19,9 +19,9 @@ from shapely import (
     points,
 )
 
-from linden.authoring.lanelet2.model import Bounds, LaneletMap
-from linden.authoring.lanelet2.overlap import overlap_share
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.lanelet2.model import Bounds, LaneletMap
+from linden_maps.lanelet2.overlap import overlap_share
 
 _KERB_REACH_M = 5.0
 """Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""

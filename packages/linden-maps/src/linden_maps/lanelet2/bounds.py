@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.model import Ids, LaneletMap, Node, Way
-from linden.authoring.lanelet2.shared import one_line
-from linden.authoring.lanelet2.simplify import kept_points
-from linden.authoring.lanelet2.stretches import Network, Side, Stretch
 from linden.maps.opendrive.evaluate.pieces import F64, I64
 from linden.maps.opendrive.evaluate.strips import sample, sections_before, sections_of
 from linden.maps.opendrive.evaluate.tables import Tables
+from linden_maps.lanelet2.model import Ids, LaneletMap, Node, Way
+from linden_maps.lanelet2.shared import one_line
+from linden_maps.lanelet2.simplify import kept_points
+from linden_maps.lanelet2.stretches import Network, Side, Stretch
 
 TOLERANCE_M = 0.015
 STATED_ERROR_M = 0.02

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.draft import Draft
-from linden.authoring.lanelet2.model import Member
-from linden.authoring.lanelet2.stretches import ROAD, SHOULDER, Stretch
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.scenery.scene.linden_survey import placed
+from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.model import Member
+from linden_maps.lanelet2.stretches import ROAD, SHOULDER, Stretch
 
 LENGTH_M = 12.0
 """Of an area: the shuttle's 4 m twice, and room to pull in; SUMO's bus stops are as long."""

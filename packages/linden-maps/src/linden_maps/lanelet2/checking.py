@@ -6,11 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.bounds import edges_of_stretch, evaluate
-from linden.authoring.lanelet2.convert import Converted, convert
-from linden.authoring.lanelet2.model import LaneletMap, bounds_of
-from linden.authoring.lanelet2.second_reader import Routes
-from linden.authoring.lanelet2.stretches import BICYCLE, DRIVABLE, ROAD, SHOULDER, WALKWAY, intersections, network_of
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
@@ -18,6 +13,11 @@ from linden.maps.opendrive.links import lane_links
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.protocol.values.enums import LaneType
+from linden_maps.lanelet2.bounds import edges_of_stretch, evaluate
+from linden_maps.lanelet2.convert import Converted, convert
+from linden_maps.lanelet2.model import LaneletMap, bounds_of
+from linden_maps.lanelet2.second_reader import Routes
+from linden_maps.lanelet2.stretches import BICYCLE, DRIVABLE, ROAD, SHOULDER, WALKWAY, intersections, network_of
 
 _CELL_M = 0.5
 _SPACING_M = 0.25

@@ -11,9 +11,9 @@ Autoware leaves the yielding lanelets of the element out of what a vehicle on th
 import math
 from itertools import combinations
 
-from linden.authoring.lanelet2.movements import Movement
-from linden.authoring.lanelet2.overlap import area_m2, overlap_m2
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.lanelet2.movements import Movement
+from linden_maps.lanelet2.overlap import area_m2, overlap_m2
 
 MET_SHARE = 0.01
 """Ways meet where so much of a lanelet lies on the other; the validator leaves out less."""

@@ -6,20 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linden.authoring.lanelet2.approaches import (
+from linden.maps.opendrive.evaluate.pieces import F64
+from linden.maps.opendrive.model import OpenDrive
+from linden.scenery.scene.posts import HEAD_HALF_M, PLATE_BOTTOM_M, PLATE_HALF_M, POST_HEIGHT_M
+from linden_maps.lanelet2.approaches import (
     Device,
     devices_of,
     heading_before,
     painted_stop_lines,
     stop_line,
 )
-from linden.authoring.lanelet2.claims import complete_claims
-from linden.authoring.lanelet2.draft import Draft
-from linden.authoring.lanelet2.model import Member
-from linden.authoring.lanelet2.movements import FREE, LIGHT, STOP, YIELD, Movement, yields
-from linden.maps.opendrive.evaluate.pieces import F64
-from linden.maps.opendrive.model import OpenDrive
-from linden.scenery.scene.posts import HEAD_HALF_M, PLATE_BOTTOM_M, PLATE_HALF_M, POST_HEIGHT_M
+from linden_maps.lanelet2.claims import complete_claims
+from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.model import Member
+from linden_maps.lanelet2.movements import FREE, LIGHT, STOP, YIELD, Movement, yields
 
 _BULBS = ("red", "yellow", "green")
 _STRICTEST = (LIGHT, STOP, YIELD, FREE)

@@ -5,18 +5,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2 import bounds as sides_of
-from linden.authoring.lanelet2.areas import ring_of
-from linden.authoring.lanelet2.bus_stops import Stop, add_bus_stops
-from linden.authoring.lanelet2.controls import add_controls
-from linden.authoring.lanelet2.crosswalks import crossed, crosswalks_of
-from linden.authoring.lanelet2.draft import Draft
-from linden.authoring.lanelet2.kerbs import loose_kerbs
-from linden.authoring.lanelet2.markings import KERB, tags_of_sides
-from linden.authoring.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
-from linden.authoring.lanelet2.movements import Movement, movements_of
-from linden.authoring.lanelet2.roundabouts import FORMAT_VERSION, add_roundabouts
-from linden.authoring.lanelet2.stretches import (
+from linden.errors import UserError
+from linden.maps.opendrive.evaluate.pieces import F64
+from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.model import OpenDrive
+from linden_maps.lanelet2 import bounds as sides_of
+from linden_maps.lanelet2.areas import ring_of
+from linden_maps.lanelet2.bus_stops import Stop, add_bus_stops
+from linden_maps.lanelet2.controls import add_controls
+from linden_maps.lanelet2.crosswalks import crossed, crosswalks_of
+from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.kerbs import loose_kerbs
+from linden_maps.lanelet2.markings import KERB, tags_of_sides
+from linden_maps.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
+from linden_maps.lanelet2.movements import Movement, movements_of
+from linden_maps.lanelet2.roundabouts import FORMAT_VERSION, add_roundabouts
+from linden_maps.lanelet2.stretches import (
     ROAD,
     SHOULDER,
     WALKWAY,
@@ -26,10 +30,6 @@ from linden.authoring.lanelet2.stretches import (
     intersections,
     network_of,
 )
-from linden.errors import UserError
-from linden.maps.opendrive.evaluate.pieces import F64
-from linden.maps.opendrive.evaluate.tables import Tables, tables_of
-from linden.maps.opendrive.model import OpenDrive
 
 UNKNOWN_SPEED_KMH = 50.0
 """Where the map gives a lane no limit: the usual one in towns. The report counts these lanelets."""

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.areas import inside
-from linden.authoring.lanelet2.model import Bounds, LaneletMap
-from linden.authoring.lanelet2.outlines import outline_of
-from linden.authoring.lanelet2.overlap import area_m2
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
+from linden_maps.lanelet2.areas import inside
+from linden_maps.lanelet2.model import Bounds, LaneletMap
+from linden_maps.lanelet2.outlines import outline_of
+from linden_maps.lanelet2.overlap import area_m2
 
 _REACH_M = 40.0
 _SPACING_M = 0.5

@@ -2,10 +2,10 @@
 
 from collections import defaultdict
 
-from linden.authoring.lanelet2.model import Bounds, Ids, LaneletMap, Member, Node, Relation, Way
-from linden.authoring.lanelet2.stretches import Network, Side
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
+from linden_maps.lanelet2.model import Bounds, Ids, LaneletMap, Member, Node, Relation, Way
+from linden_maps.lanelet2.stretches import Network, Side
 
 
 class Draft:

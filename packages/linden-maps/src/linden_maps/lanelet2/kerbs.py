@@ -1,11 +1,11 @@
 """Kerbs that bound no lanelet, such as those round the corners of junctions: ways of their own."""
 
-from linden.authoring.lanelet2.bounds import Edge
-from linden.authoring.lanelet2.markings import beside_boundary, is_step
-from linden.authoring.lanelet2.stretches import WALKWAY, Network, Side, subtype_of
 from linden.maps.opendrive.evaluate.strips import sections_before
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Lane
+from linden_maps.lanelet2.bounds import Edge
+from linden_maps.lanelet2.markings import beside_boundary, is_step
+from linden_maps.lanelet2.stretches import WALKWAY, Network, Side, subtype_of
 
 
 def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]]:

@@ -4,10 +4,10 @@ Tags as Lanelet2 and autoware_lanelet2_extension have them. Inside junctions bou
 as Autoware wants them there (vm-03-03).
 """
 
-from linden.authoring.lanelet2.model import Tags
-from linden.authoring.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Lane, RoadMark
+from linden_maps.lanelet2.model import Tags
+from linden_maps.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch
 
 KERB_M = 0.03
 """A step in height from this on is a kerb."""

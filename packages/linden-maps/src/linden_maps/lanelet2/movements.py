@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.stretches import ROAD, Network
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Junction
+from linden_maps.lanelet2.stretches import ROAD, Network
 
 STRAIGHT_RAD = math.radians(30.0)
 """A way that turns less than this goes straight on."""

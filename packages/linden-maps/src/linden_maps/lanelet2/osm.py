@@ -6,10 +6,10 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from linden.authoring.lanelet2.model import DIGITS, LaneletMap, Member, Node, Relation, Way
-from linden.authoring.lanelet2.projection import NOWHERE, Projection, projection_of
-from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
+from linden_maps.lanelet2.model import DIGITS, LaneletMap, Member, Node, Relation, Way
+from linden_maps.lanelet2.projection import NOWHERE, Projection, projection_of
+from linden_maps.osm_xml import osm_root, tags_of
 
 _LARGEST_ID = 2**63 - 1
 _MOST_BYTES = 1 << 30

@@ -4,10 +4,10 @@ A roundabout of the map is one junction, and each way through it is one lanelet 
 inside are ``internal``, the lanelets before it ``entry`` and the lanelets behind it ``exit``.
 """
 
-from linden.authoring.lanelet2.draft import Draft
-from linden.authoring.lanelet2.model import Member
-from linden.authoring.lanelet2.movements import Movement
 from linden.maps.opendrive.model import OpenDrive
+from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.model import Member
+from linden_maps.lanelet2.movements import Movement
 
 FORMAT_VERSION = "2"
 """Of a file with such elements; Autoware that knows format 1 alone does not load it."""

@@ -9,10 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from linden.authoring.lanelet2.model import LaneletMap, Relation
-from linden.authoring.lanelet2.osm import osm_bytes
-from linden.authoring.lanelet2.projection import NOWHERE, projection_of
 from linden.errors import UserError
+from linden_maps.lanelet2.model import LaneletMap, Relation
+from linden_maps.lanelet2.osm import osm_bytes
+from linden_maps.lanelet2.projection import NOWHERE, projection_of
 
 KNOWN_ELEMENTS = frozenset({"traffic_light", "traffic_sign", "speed_limit", "right_of_way", "all_way_stop"})
 _LOCATION = "de"  # the only one with traffic rules in the library; they are those of the tags, not of a country

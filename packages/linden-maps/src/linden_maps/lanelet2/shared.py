@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.lanelet2.stretches import Network, Side
 from linden.maps.opendrive.evaluate.pieces import F64
+from linden_maps.lanelet2.stretches import Network, Side
 
 NEAR_M = 0.5
 """Boundaries further apart than this are two; the shared one is their mean, so it lies within half of this of both."""

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from shapely import LineString, Point
 
-from linden.authoring.openstreetmap.extract import Extract, Tags
-from linden.authoring.openstreetmap.graph import STRAIGHT_TO_RING_M, Graph, Segment
-from linden.authoring.openstreetmap.tags import TAGGED
-from linden.authoring.streets.street_facts import Control
+from linden_maps.openstreetmap.extract import Extract, Tags
+from linden_maps.openstreetmap.graph import STRAIGHT_TO_RING_M, Graph, Segment
+from linden_maps.openstreetmap.tags import TAGGED
+from linden_maps.streets.street_facts import Control
 
 FARTHEST_M = 60.0
 """From a sign or light on a way to its junction; farther ones are those of crossings between junctions."""

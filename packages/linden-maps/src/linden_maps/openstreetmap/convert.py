@@ -3,13 +3,13 @@
 from collections import Counter
 from typing import Any, NamedTuple
 
-from linden.authoring.openstreetmap import surroundings
-from linden.authoring.openstreetmap.controls import Controls, controls_of
-from linden.authoring.openstreetmap.extract import Extract, OsmWay, read_extract
-from linden.authoring.openstreetmap.graph import Graph, Segment, graph_of, mirrored
-from linden.authoring.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class, unbuilt_cycleways
-from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
+from linden_maps.openstreetmap import surroundings
+from linden_maps.openstreetmap.controls import Controls, controls_of
+from linden_maps.openstreetmap.extract import Extract, OsmWay, read_extract
+from linden_maps.openstreetmap.graph import Graph, Segment, graph_of, mirrored
+from linden_maps.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class, unbuilt_cycleways
+from linden_maps.streets.street_facts import Control
 
 LICENCE = "Map data from OpenStreetMap, open database licence (ODbL) 1.0, openstreetmap.org/copyright"
 

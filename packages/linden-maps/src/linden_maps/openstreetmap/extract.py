@@ -7,8 +7,8 @@ allowed there: every extract cuts ways and relations at its edge. Such reference
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
+from linden_maps.osm_xml import osm_root, tags_of
 
 Tags = Mapping[str, str]
 

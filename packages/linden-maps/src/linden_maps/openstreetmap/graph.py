@@ -13,10 +13,10 @@ from typing import NamedTuple
 from pyproj import Proj
 from shapely import LineString
 
-from linden.authoring.openstreetmap.extract import Extract, OsmWay
-from linden.authoring.openstreetmap.tags import Carriageway, carriageway, is_street
-from linden.authoring.streets.geojson import refuse_too_wide
-from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M
+from linden_maps.openstreetmap.extract import Extract, OsmWay
+from linden_maps.openstreetmap.tags import Carriageway, carriageway, is_street
+from linden_maps.streets.geojson import refuse_too_wide
+from linden_maps.streets.network import ROUNDABOUT_SETBACK_M
 
 SMALL_RING_M = 14.0
 """Radius up to which a ring becomes a mini-roundabout; FHWA's have inscribed circles of 15 to 27 m in diameter."""

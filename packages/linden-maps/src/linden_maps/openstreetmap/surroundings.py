@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 from shapely import LineString, Point
 
-from linden.authoring.openstreetmap.extract import Extract, OsmRelation, Tags
-from linden.authoring.openstreetmap.graph import Graph
-from linden.authoring.openstreetmap.tags import TAGGED, metres
+from linden_maps.openstreetmap.extract import Extract, OsmRelation, Tags
+from linden_maps.openstreetmap.graph import Graph
+from linden_maps.openstreetmap.tags import TAGGED, metres
 
 LEVEL_M = 3.0  # of a storey, as the Wiki's page on building:levels reckons
 ROOF_M = 1.0

@@ -8,9 +8,9 @@ the reason. Sources of the meanings: OpenStreetMap Wiki, pages "Key:highway", "K
 import re
 from typing import NamedTuple
 
-from linden.authoring.openstreetmap.extract import Tags
-from linden.authoring.streets.cross_section import CYCLE_LANE_M, PARKING_M
-from linden.authoring.streets.street_facts import MOST_LEVELS, NARROWEST_M, WIDEST_M, Speed
+from linden_maps.openstreetmap.extract import Tags
+from linden_maps.streets.cross_section import CYCLE_LANE_M, PARKING_M
+from linden_maps.streets.street_facts import MOST_LEVELS, NARROWEST_M, WIDEST_M, Speed
 
 CLASS_OF = {
     "motorway": "arterial",

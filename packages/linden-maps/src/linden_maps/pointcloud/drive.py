@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.pointcloud.cloud import F64, Cloud, Scan
 from linden.geometry import from_opendrive
 from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.model import OpenDrive
@@ -19,6 +18,7 @@ from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.scenery.mesh import Mesh
 from linden.sensors.casting.caster import Caster
 from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
+from linden_maps.pointcloud.cloud import F64, Cloud, Scan
 
 _BLOCK_M = 200.0
 """Places are visited block by block, so that what is near to one another is measured one after the other."""

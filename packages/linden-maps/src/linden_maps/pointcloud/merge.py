@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from linden.authoring.pointcloud.cloud import Scan, in_map
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
-from linden.authoring.pointcloud.voxels import VoxelGrid
+from linden_maps.pointcloud.cloud import Scan, in_map
+from linden_maps.pointcloud.pcd_writing import PcdWriter
+from linden_maps.pointcloud.voxels import VoxelGrid
 
 
 class Merged(NamedTuple):

@@ -14,9 +14,9 @@ from typing import IO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.pointcloud.cloud import Cloud
 from linden.compiled import kernel
 from linden.errors import UserError
+from linden_maps.pointcloud.cloud import Cloud
 
 ASCII, BINARY, COMPRESSED = "ascii", "binary", "binary_compressed"
 _LONGEST_HEAD_LINES = 100

@@ -6,8 +6,8 @@ from types import TracebackType
 import numpy as np
 from typing_extensions import Self
 
-from linden.authoring.output import unwritable_file
-from linden.authoring.pointcloud.cloud import Cloud
+from linden_maps.output import unwritable_file
+from linden_maps.pointcloud.cloud import Cloud
 
 _HEAD = """# .PCD v0.7 - Point Cloud Data file format
 # {remark}

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.pointcloud.cloud import F64, HERE, Cloud, Scan
-from linden.authoring.pointcloud.pcd_reading import clouds_of, header_of
-from linden.authoring.pointcloud.pcd_writing import PcdWriter
 from linden.errors import UserError
+from linden_maps.pointcloud.cloud import F64, HERE, Cloud, Scan
+from linden_maps.pointcloud.pcd_reading import clouds_of, header_of
+from linden_maps.pointcloud.pcd_writing import PcdWriter
 
 _REMARK = "# name x y z qx qy qz qw: the sensor in the map, m and a unit quaternion; x east, y north, z up\n"
 

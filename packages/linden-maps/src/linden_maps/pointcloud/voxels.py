@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.authoring.pointcloud.cells import Cells, Located, empty, insert, locate, middles, packed, refill
-from linden.authoring.pointcloud.cloud import Cloud
 from linden.errors import UserError
+from linden_maps.pointcloud.cells import Cells, Located, empty, insert, locate, middles, packed, refill
+from linden_maps.pointcloud.cloud import Cloud
 
 MOST_PLACES = 1 << 24
 """Places of all tables in memory together; 28 bytes each, so 470 MB."""

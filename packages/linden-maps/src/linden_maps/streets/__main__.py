@@ -1,4 +1,4 @@
-"""``python -m linden.authoring.streets``: build a street file's map and its route files, as they are shipped.
+"""``python -m linden_maps.streets``: build a street file's map and its route files, as they are shipped.
 
 ``linden map build`` writes a map alone; this writes the routes as well, because both must come from the same streets.
 """
@@ -7,16 +7,16 @@ import argparse
 import json
 from pathlib import Path
 
-from linden.authoring.streets.build import assembled
-from linden.authoring.streets.controls import without_lights
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.routes import xml
-from linden.authoring.streets.writing import text
+from linden_maps.streets.build import assembled
+from linden_maps.streets.controls import without_lights
+from linden_maps.streets.geojson import read
+from linden_maps.streets.routes import xml
+from linden_maps.streets.writing import text
 
 
 def main() -> None:
     """Write the map and the routes named on the command line, as ROUTE=FILE."""
-    parser = argparse.ArgumentParser(prog="python -m linden.authoring.streets", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m linden_maps.streets", description=__doc__)
     parser.add_argument("streets", type=Path, help="GeoJSON file (docs/reference/maps.md)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="OpenDRIVE file to write")
     parser.add_argument("--route", action="append", default=[], metavar="ROUTE=FILE", help="a route's id, and its file")

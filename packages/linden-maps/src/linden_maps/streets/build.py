@@ -5,9 +5,10 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
-from linden.authoring.streets import controls, crosswalks, junction_surfaces, junctions, roads, roundabouts
-from linden.authoring.streets.curves import Point, length, pose_at, seen_from
-from linden.authoring.streets.document import (
+from linden.errors import UserError
+from linden_maps.streets import controls, crosswalks, junction_surfaces, junctions, roads, roundabouts
+from linden_maps.streets.curves import Point, length, pose_at, seen_from
+from linden_maps.streets.document import (
     Controller,
     Document,
     JunctionRecord,
@@ -18,17 +19,16 @@ from linden.authoring.streets.document import (
     SignalReference,
     value,
 )
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.levels import crossings, lifts
-from linden.authoring.streets.name_signs import name_signs
-from linden.authoring.streets.network import End, Leg, Network
-from linden.authoring.streets.network import build as build_network
-from linden.authoring.streets.rails import rails
-from linden.authoring.streets.rings import ISLAND_RADIUS_M
-from linden.authoring.streets.standing import standing
-from linden.authoring.streets.street_facts import Control, Facts, Intersection
-from linden.authoring.streets.writing import text
-from linden.errors import UserError
+from linden_maps.streets.geojson import read
+from linden_maps.streets.levels import crossings, lifts
+from linden_maps.streets.name_signs import name_signs
+from linden_maps.streets.network import End, Leg, Network
+from linden_maps.streets.network import build as build_network
+from linden_maps.streets.rails import rails
+from linden_maps.streets.rings import ISLAND_RADIUS_M
+from linden_maps.streets.standing import standing
+from linden_maps.streets.street_facts import Control, Facts, Intersection
+from linden_maps.streets.writing import text
 
 FIRST_JUNCTION_ID = 1_000_000  # above all road ids: LibCarla takes a link to an unknown road for a junction
 FIRST_CONTROLLER_ID = 2_000_000

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from linden.authoring.streets.cross_section import KERB_M, PAVED, View, view
-from linden.authoring.streets.curves import length
-from linden.authoring.streets.document import Object, Signal
-from linden.authoring.streets.network import Leg, Network
-from linden.authoring.streets.rings import ISLAND_RADIUS_M, LANE_M
-from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
+from linden_maps.streets.cross_section import KERB_M, PAVED, View, view
+from linden_maps.streets.curves import length
+from linden_maps.streets.document import Object, Signal
+from linden_maps.streets.network import Leg, Network
+from linden_maps.streets.rings import ISLAND_RADIUS_M, LANE_M
+from linden_maps.streets.street_facts import Control, Facts, Intersection, Street
 
 STOP, YIELD, LIGHT, SPEED_LIMIT = "206", "205", "1000001", "274"  # LibCarla's SignalType
 SPEED_SIGN_M = 25.0  # from where a road begins; estimated

@@ -5,7 +5,7 @@ Widths are authored between the kerbs; ``docs/decisions/0010-cross-sections.md``
 
 from typing import NamedTuple
 
-from linden.authoring.streets.street_facts import Street
+from linden_maps.streets.street_facts import Street
 
 PARKING_M = 2.1  # 7 ft
 CYCLE_LANE_M = 1.5  # 5 ft, the least that NACTO's Urban Bikeway Design Guide asks for

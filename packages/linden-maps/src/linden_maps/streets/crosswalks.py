@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator
 
-from linden.authoring.streets import controls
-from linden.authoring.streets.cross_section import view
-from linden.authoring.streets.curves import Point, length, pose_at
-from linden.authoring.streets.document import Object
-from linden.authoring.streets.network import End, Network, nearest_road
-from linden.authoring.streets.street_facts import Facts
+from linden_maps.streets import controls
+from linden_maps.streets.cross_section import view
+from linden_maps.streets.curves import Point, length, pose_at
+from linden_maps.streets.document import Object
+from linden_maps.streets.network import End, Network, nearest_road
+from linden_maps.streets.street_facts import Facts
 
 CROSSWALK_BEFORE_STOP_M = 8.0  # passengers cross behind the shuttle
 ONE_CROSSWALK_WITHIN_M = 30.0  # of opposite stops

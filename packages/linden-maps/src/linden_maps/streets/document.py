@@ -1,9 +1,9 @@
-"""OpenDRIVE 1.4 as values: what the builder makes and ``linden.authoring.streets.writing`` turns into text."""
+"""OpenDRIVE 1.4 as values: what the builder makes and ``linden_maps.streets.writing`` turns into text."""
 
 from typing import NamedTuple
 
-from linden.authoring.streets.curves import Path, Point
-from linden.authoring.streets.street_facts import Speed
+from linden_maps.streets.curves import Path, Point
+from linden_maps.streets.street_facts import Speed
 
 
 class Cubic(NamedTuple):

@@ -12,9 +12,11 @@ from typing import Any
 
 from pyproj import Proj
 
-from linden.authoring.streets.cross_section import CYCLE_LANE_M
-from linden.authoring.streets.curves import Point
-from linden.authoring.streets.street_facts import (
+from linden.errors import UserError
+from linden.maps.opendrive.limits import WIDEST_EXTENT_M
+from linden_maps.streets.cross_section import CYCLE_LANE_M
+from linden_maps.streets.curves import Point
+from linden_maps.streets.street_facts import (
     CYCLE_LANES,
     FURNITURE,
     MOST_LEVELS,
@@ -34,8 +36,6 @@ from linden.authoring.streets.street_facts import (
     Stop,
     Street,
 )
-from linden.errors import UserError
-from linden.maps.opendrive.limits import WIDEST_EXTENT_M
 
 _ROUTES = frozenset({"route", "route_alternative"})
 _LINES = _ROUTES | {"street", "railroad"}

@@ -10,11 +10,11 @@ from collections.abc import Iterator, Sequence
 from operator import mul
 from typing import NamedTuple
 
-from linden.authoring.streets.cross_section import RAISED
-from linden.authoring.streets.curves import Point, Pose, length, moved, pose_at, seen_from
-from linden.authoring.streets.document import Cubic, EdgeHeights, LaneRecord, RoadRecord, eased, value
-from linden.authoring.streets.network import End, Leg
-from linden.authoring.streets.street_facts import AnyGround, Profile
+from linden_maps.streets.cross_section import RAISED
+from linden_maps.streets.curves import Point, Pose, length, moved, pose_at, seen_from
+from linden_maps.streets.document import Cubic, EdgeHeights, LaneRecord, RoadRecord, eased, value
+from linden_maps.streets.network import End, Leg
+from linden_maps.streets.street_facts import AnyGround, Profile
 
 LEVELLING_ROUNDS = 100
 FIT_ROUNDS = 10

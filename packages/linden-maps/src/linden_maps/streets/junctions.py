@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import LineString, MultiPolygon, Point, Polygon, convex_hull, is_valid, polygons, unary_union
 
-from linden.authoring.streets.cross_section import KERB_M
-from linden.authoring.streets.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
-from linden.authoring.streets.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
-from linden.authoring.streets.network import Leg
-from linden.authoring.streets.roads import blended, contact, strips
-from linden.authoring.streets.street_facts import slower
+from linden_maps.streets.cross_section import KERB_M
+from linden_maps.streets.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
+from linden_maps.streets.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
+from linden_maps.streets.network import Leg
+from linden_maps.streets.roads import blended, contact, strips
+from linden_maps.streets.street_facts import slower
 
 SHARES_OF_ROOM = (1.0, 0.9, 0.8, 0.7)  # for the arc of a turn; a tighter one keeps further off the kerb
 KERB_TOUCHED_M2 = 0.005

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from shapely import LineString, STRtree
 
-from linden.authoring.streets.curves import length
-from linden.authoring.streets.network import Network
+from linden_maps.streets.curves import length
+from linden_maps.streets.network import Network
 
 LEVEL_M = 5.5
 """From a street to the one over it: 16 ft to drive under (AASHTO's Green Book, 2018) and 0.6 m of bridge."""

@@ -8,17 +8,17 @@ there. Streets without a known name get no blade.
 import math
 from collections.abc import Iterator
 
-from linden.authoring.streets.controls import (
+from linden_maps.streets.controls import (
     LINE_TO_END_M,
     POST_TO_KERB_M,
     ROOM_FOR_CROSSWALK_M,
     line_before_end_m,
 )
-from linden.authoring.streets.cross_section import KERB_M
-from linden.authoring.streets.curves import length
-from linden.authoring.streets.document import Object
-from linden.authoring.streets.network import Leg, Network
-from linden.authoring.streets.street_facts import Facts, Street
+from linden_maps.streets.cross_section import KERB_M
+from linden_maps.streets.curves import length
+from linden_maps.streets.document import Object
+from linden_maps.streets.network import Leg, Network
+from linden_maps.streets.street_facts import Facts, Street
 
 POST_HALF_M = 0.03  # a round steel post of 2 3/8 in
 HEIGHT_M = 2.8  # two blades of 6 in above 2.4 m; section 2A.18 asks for 7 ft below the lower one

@@ -8,11 +8,11 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
-from linden.authoring.streets.cross_section import Section, View, of_street, view
-from linden.authoring.streets.curves import Path, Point, Pose, length, pose_at, rounded, trimmed, turned_back, wrapped
-from linden.authoring.streets.rings import KERB_RADII_M, LANE_RADII_M, leads_in
-from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 from linden.errors import UserError
+from linden_maps.streets.cross_section import Section, View, of_street, view
+from linden_maps.streets.curves import Path, Point, Pose, length, pose_at, rounded, trimmed, turned_back, wrapped
+from linden_maps.streets.rings import KERB_RADII_M, LANE_RADII_M, leads_in
+from linden_maps.streets.street_facts import Control, Facts, Intersection, Street
 
 BEND_RADIUS_M = {"arterial": 60.0, "collector": 40.0, "local": 20.0, "service": 12.0}
 CORNER_RADII_M = (6.0, 4.5, 3.5)

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 from shapely import LineString, MultiLineString, Polygon
 
-from linden.authoring.streets.cross_section import view
-from linden.authoring.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
-from linden.authoring.streets.document import Object
-from linden.authoring.streets.network import Network
-from linden.authoring.streets.street_facts import Facts, Railroad
+from linden_maps.streets.cross_section import view
+from linden_maps.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
+from linden_maps.streets.document import Object
+from linden_maps.streets.network import Network
+from linden_maps.streets.street_facts import Facts, Railroad
 
 BED_HALF_M = 2.6  # as wide as the scenery's bed of gravel; a single track, estimated
 

@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from linden.authoring.streets.curves import Piece, Point, Pose, along, moved, seen_from
 from linden.errors import UserError
+from linden_maps.streets.curves import Piece, Point, Pose, along, moved, seen_from
 
 ISLAND_RADIUS_M = 4.3
 LANE_M = 4.6

@@ -4,11 +4,11 @@ import math
 from itertools import zip_longest
 from typing import NamedTuple
 
-from linden.authoring.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED, Lane, Section
-from linden.authoring.streets.curves import Path, Pose, joined, length, pose_at, turned_back
-from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
-from linden.authoring.streets.network import End, Leg
-from linden.authoring.streets.street_facts import AnyGround, Street, slower
+from linden_maps.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED, Lane, Section
+from linden_maps.streets.curves import Path, Pose, joined, length, pose_at, turned_back
+from linden_maps.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
+from linden_maps.streets.network import End, Leg
+from linden_maps.streets.street_facts import AnyGround, Street, slower
 
 KINDS = ("driving", "biking", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
 

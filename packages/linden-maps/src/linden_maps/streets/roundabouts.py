@@ -7,8 +7,8 @@ lane is where these roads lie on each other; ``docs/decisions/0011-roundabouts.m
 import itertools
 import math
 
-from linden.authoring.streets.cross_section import KERB_HEIGHT_M, KERB_M
-from linden.authoring.streets.curves import (
+from linden_maps.streets.cross_section import KERB_HEIGHT_M, KERB_M
+from linden_maps.streets.curves import (
     Path,
     Piece,
     Point,
@@ -19,10 +19,10 @@ from linden.authoring.streets.curves import (
     moved,
     turned_back,
 )
-from linden.authoring.streets.document import Cubic, LaneRecord, Mark, RoadRecord, eased
-from linden.authoring.streets.junctions import Turn, lane_pairs, pose_in, pose_out
-from linden.authoring.streets.network import Leg
-from linden.authoring.streets.rings import ISLAND_RADIUS_M, KERB_RADII_M, LANE_M, LANE_RADII_M, round_ring
+from linden_maps.streets.document import Cubic, LaneRecord, Mark, RoadRecord, eased
+from linden_maps.streets.junctions import Turn, lane_pairs, pose_in, pose_out
+from linden_maps.streets.network import Leg
+from linden_maps.streets.rings import ISLAND_RADIUS_M, KERB_RADII_M, LANE_M, LANE_RADII_M, round_ring
 
 
 def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:

@@ -10,15 +10,15 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.streets.build import Built
-from linden.authoring.streets.cross_section import view
-from linden.authoring.streets.curves import Pose, length, moved, pose_at, turned_back, wrapped
-from linden.authoring.streets.document import RoadRecord, value
-from linden.authoring.streets.network import End, nearest_road
-from linden.authoring.streets.street_facts import Route, Stop
 from linden.errors import UserError
 from linden.geometry import from_opendrive
 from linden.protocol.values.space import Transform
+from linden_maps.streets.build import Built
+from linden_maps.streets.cross_section import view
+from linden_maps.streets.curves import Pose, length, moved, pose_at, turned_back, wrapped
+from linden_maps.streets.document import RoadRecord, value
+from linden_maps.streets.network import End, nearest_road
+from linden_maps.streets.street_facts import Route, Stop
 
 STEP_M = 1.0  # between the samples of a lane's centre
 SPACING_M = 40.0  # between positions on a road; each turn gives one more just after it

@@ -10,11 +10,11 @@ from typing import NamedTuple
 from shapely import LineString, MultiPolygon, Point, Polygon, STRtree, unary_union
 from shapely.geometry.base import BaseGeometry
 
-from linden.authoring.streets.cross_section import View, view
-from linden.authoring.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
-from linden.authoring.streets.document import Object
-from linden.authoring.streets.network import Network
-from linden.authoring.streets.street_facts import Building, Facts, Furniture
+from linden_maps.streets.cross_section import View, view
+from linden_maps.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
+from linden_maps.streets.document import Object
+from linden_maps.streets.network import Network
+from linden_maps.streets.street_facts import Building, Facts, Furniture
 
 CLEAR_M = 0.3  # between a wall and the paved ground
 SMALLEST_M2 = 4.0

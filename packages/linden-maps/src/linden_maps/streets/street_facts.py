@@ -1,13 +1,13 @@
 """The street facts a map is built from, as frozen values in metres: streets, intersections, stops, buildings, ground.
 
-Points are in OpenDRIVE's frame, x east and y north. :mod:`linden.authoring.streets.geojson` reads them from a file.
+Points are in OpenDRIVE's frame, x east and y north. :mod:`linden_maps.streets.geojson` reads them from a file.
 """
 
 from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple, Protocol
 
-from linden.authoring.streets.curves import Point
+from linden_maps.streets.curves import Point
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
 MOST_LEVELS = 5

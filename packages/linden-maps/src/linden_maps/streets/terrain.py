@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pyproj import CRS, Proj, Transformer
 
-from linden.authoring.streets.street_facts import Facts, Profile
 from linden.errors import UserError
+from linden_maps.streets.street_facts import Facts, Profile
 
 F64 = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ Lengths are written to 1 µm, angles and curvatures to 1 nrad and 1e-9/m. Elemen
 
 from lxml import etree
 
-from linden.authoring.streets.curves import Path
-from linden.authoring.streets.document import (
+from linden_maps.streets.curves import Path
+from linden_maps.streets.document import (
     Cubic,
     Document,
     EdgeHeights,
@@ -18,7 +18,7 @@ from linden.authoring.streets.document import (
     Signal,
     SignalReference,
 )
-from linden.authoring.streets.street_facts import Speed
+from linden_maps.streets.street_facts import Speed
 
 
 def text(document: Document) -> bytes:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from lxml import etree
 
-from linden.authoring.sumo.net import PARKING_TYPE, Net, along, point_at
 from linden.errors import UserError
+from linden_maps.sumo.net import PARKING_TYPE, Net, along, point_at
 
 LENGTH_M = 12.0  # of a bus stop: the shuttle's 4 m twice, and room to pull in
 SPACE_M, CORNER_M = 6.7, 10.0

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import networkx as nx
 
-from linden.authoring.sumo.net import Net
-from linden.authoring.sumo.network import Converted
 from linden.maps.navigation.areas import crosswalk_outlines
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
+from linden_maps.sumo.net import Net
+from linden_maps.sumo.network import Converted
 
 LENGTH_SHARE = 0.02  # of the whole length that netconvert may cut off or add at joints of lanes
 SPEED_MPS = 0.05  # SUMO writes two decimals

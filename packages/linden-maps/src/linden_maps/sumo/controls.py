@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.net import Connection, Net
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.records import AffectedLane, PlacedSignal
+from linden_maps.sumo.net import Connection, Net
 
 MINOR_PRIORITY, MAJOR_PRIORITY = 1, 3
 """Priorities of edges with and without a stop or yield sign. Without them netconvert stops 25 other approaches."""

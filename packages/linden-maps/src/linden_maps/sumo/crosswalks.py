@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.net import Net, NetEdge, along
 from linden.maps.navigation.areas import crosswalk_outlines
 from linden.maps.opendrive.model import OpenDrive
+from linden_maps.sumo.net import Net, NetEdge, along
 
 AT_JUNCTION_M = 20.0  # from a crosswalk to the end of a street; one farther away crosses within the street
 LINE_M = 1.8  # from a crosswalk to where vehicles stop: MUTCD 3B.16 asks for 4 ft of road and a line of up to 2 ft

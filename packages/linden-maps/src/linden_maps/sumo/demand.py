@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.bus_stops import ParkingArea
-from linden.authoring.sumo.net import Net, NetEdge
-from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, car_streets
-from linden.authoring.sumo.vehicle_types import KERB_MIX, MIX
 from linden.errors import UserError
+from linden_maps.sumo.bus_stops import ParkingArea
+from linden_maps.sumo.net import Net, NetEdge
+from linden_maps.sumo.places import SCHOOL, TRANSIT, Place, car_streets
+from linden_maps.sumo.vehicle_types import KERB_MIX, MIX
 
 BUSY_TRIPS_PER_KM = 14.0
 """Trips that begin in the busiest hour for each km of lane: an estimate, which gives Linden some 1,100 an hour."""

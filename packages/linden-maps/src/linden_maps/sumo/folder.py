@@ -5,18 +5,18 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.output import staged_folder
-from linden.authoring.sumo.bus_stops import STOP_CLEAR_M, BusStop, RouteStop, bus_stops, parking_areas, stops_file
-from linden.authoring.sumo.demand import Demand, check, draw, trips_file
-from linden.authoring.sumo.network import Converted, convert
-from linden.authoring.sumo.people import draw_riders, draw_walks, people_file
-from linden.authoring.sumo.places import places_of
-from linden.authoring.sumo.vehicle_types import types_file
 from linden.maps.facts import derive
 from linden.maps.library import HOME_MAPS
 from linden.maps.navigation.areas import crosswalk_outlines
 from linden.scenery.scene.objects import Kind
 from linden.scenery.scene.south_linden import home
+from linden_maps.output import staged_folder
+from linden_maps.sumo.bus_stops import STOP_CLEAR_M, BusStop, RouteStop, bus_stops, parking_areas, stops_file
+from linden_maps.sumo.demand import Demand, check, draw, trips_file
+from linden_maps.sumo.network import Converted, convert
+from linden_maps.sumo.people import draw_riders, draw_walks, people_file
+from linden_maps.sumo.places import places_of
+from linden_maps.sumo.vehicle_types import types_file
 
 CROSSWALK_CLEAR_M = 6.1  # 20 feet, as Columbus City Code 2151.01 asks for
 CAR_CLEAR_M = 2.8  # half a parked car, and room before it

@@ -6,8 +6,12 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo import programs
-from linden.authoring.sumo.controls import (
+from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.parse import parse
+from linden.maps.opendrive.signals import place
+from linden.traffic.cycle import TIMES_S
+from linden_maps.sumo import programs
+from linden_maps.sumo.controls import (
     Controls,
     controls_of,
     edge_patch,
@@ -15,12 +19,8 @@ from linden.authoring.sumo.controls import (
     node_patch,
     node_types,
 )
-from linden.authoring.sumo.crosswalks import crossing_patch, end_at_lines, marked_legs
-from linden.authoring.sumo.net import Net, read_net
-from linden.maps.opendrive.model import OpenDrive
-from linden.maps.opendrive.parse import parse
-from linden.maps.opendrive.signals import place
-from linden.traffic.cycle import TIMES_S
+from linden_maps.sumo.crosswalks import crossing_patch, end_at_lines, marked_legs
+from linden_maps.sumo.net import Net, read_net
 
 LANE_TYPES = """<types>
   <type id="driving" disallow="pedestrian tram rail_urban rail ship"/>

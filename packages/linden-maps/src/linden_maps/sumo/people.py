@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.bus_stops import BusStop
-from linden.authoring.sumo.demand import HOUR_S, HOUR_SHARES, Demand, HomeWard, drawn, likelihoods, school_way
-from linden.authoring.sumo.net import Net, NetEdge
-from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, pavements
+from linden_maps.sumo.bus_stops import BusStop
+from linden_maps.sumo.demand import HOUR_S, HOUR_SHARES, Demand, HomeWard, drawn, likelihoods, school_way
+from linden_maps.sumo.net import Net, NetEdge
+from linden_maps.sumo.places import SCHOOL, TRANSIT, Place, pavements
 
 BUSY_WALKS_PER_KM = 8.0
 """Walks that begin in the busiest hour for each km of pavement: an estimate, some 520 an hour in Linden."""

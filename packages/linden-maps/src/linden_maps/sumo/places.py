@@ -5,9 +5,9 @@ from importlib import resources
 from pathlib import Path
 from typing import NamedTuple
 
-from linden.authoring.sumo.net import Net, NetEdge, along
 from linden.errors import UserError
 from linden.scenery.scene.linden_survey import placed
+from linden_maps.sumo.net import Net, NetEdge, along
 
 SCHOOL, TRANSIT, COMMUNITY = "school", "transit", "community"
 KINDS = (SCHOOL, TRANSIT, COMMUNITY)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.unreal.parts import Part, Surface
+from linden_maps.unreal.parts import Part, Surface
 
 VERSION = 7400
 CM_PER_M = 100.0

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from linden.authoring.unreal.fbx import fbx
-from linden.authoring.unreal.glb import glb
-from linden.authoring.unreal.parts import FOLDER_OF_GROUP, Part
-from linden.authoring.unreal.usd import write_usd
 from linden.errors import UserError
+from linden_maps.unreal.fbx import fbx
+from linden_maps.unreal.glb import glb
+from linden_maps.unreal.parts import FOLDER_OF_GROUP, Part
+from linden_maps.unreal.usd import write_usd
 
 MANIFEST, README = "manifest.yaml", "README.md"
 _MOVED_BY_CARLA = frozenset({"Road", "RoadLines", "SideWalk", "Terrain"})

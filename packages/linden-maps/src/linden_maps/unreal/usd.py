@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from linden.authoring.unreal.parts import Part, Surface
 from linden.errors import UserError
+from linden_maps.unreal.parts import Part, Surface
 
 
 def write_usd(parts: Sequence[Part], name: str, path: Path) -> None:

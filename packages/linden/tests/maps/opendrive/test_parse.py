@@ -9,8 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linden.authoring.checks.check import check
-from linden.authoring.drawing.svg import svg
 from linden.maps.opendrive.georeference import read_origin
 from linden.maps.opendrive.limits import MapError
 from linden.maps.opendrive.mesh import road_mesh
@@ -19,6 +17,8 @@ from linden.maps.opendrive.parse import parse
 from linden.maps.opendrive.signals import place
 from linden.maps.opendrive.spawn_points import spawn_points
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.check import check
+from linden_maps.drawing.svg import svg
 from opendrive_texts import lane, line, opendrive, road, section, signal, street_through_junction
 
 GOOD = street_through_junction(signals=signal("7", 45.0, -4.5))

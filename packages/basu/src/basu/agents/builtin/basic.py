@@ -4,7 +4,7 @@ This file joins the official client to ``driving`` and ``rules``, which decide a
 sensors and no clock: the same ticks give the same drive.
 
 The human agent's driver decides in every step, as a driving instructor does. Its decision counts while the person does
-not drive. ``basu.agents.manual.inputs`` decides between the two.
+not drive. ``basu_window.manual.inputs`` decides between the two.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import carla
 
 from basu.agents.autonomous_agent import AgentConfig, parse_config
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
-from basu.agents.loader import BUILT_IN, LOAD_LIMIT_S, LoadedAgent, load_agent
+from basu.agents.loader import LOAD_LIMIT_S, LoadedAgent, is_name, load_agent
 from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError
 from basu.agents.process.child import Place, Wanted
 from basu.agents.sensor_file import SensorSpec
@@ -100,9 +100,7 @@ def find_agent(
         if not Path(folder).is_dir():
             raise UserError(f"--agent-writes {folder}: there is no such folder; make it first")
     memory = None if memory_gb is None else Memory(memory_gb)
-    file = (
-        None if wanted.partition(":")[0] in BUILT_IN else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
-    )
+    file = None if is_name(wanted.partition(":")[0]) else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
     agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes, closed_ports)
     try:
         process = agent.process()

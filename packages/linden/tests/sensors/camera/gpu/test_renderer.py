@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-TESTS = Path(__file__).parents[4]
+TESTS = Path(__file__).parents[6] / "tests"
 KINDS = ("depth", "semantic", "instance", "normals", "flow", "coloured")
 
 
