@@ -1,4 +1,7 @@
-"""A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
+"""Fixtures of the tests of basu and its plugins: a live simulator, and a short piece of a Linden street to drive on.
+
+conftest.py loads them. The automatic ones act in the tests of these distributions only.
+"""
 
 import subprocess
 import sys
@@ -12,23 +15,38 @@ import pytest
 from basu import simulator as simulator_module
 from basu.agents.process import agent_process
 from basu.output.report import path_picture
-from basu_leaderboard.replacement_modules import step_back
 from kept_server import end_kept_server, kept_server
 from servers import RunningServer, running_server
 from shared_client import shared_client
 from tracing import untraced
 
-SHORT_ROUTE = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
+PACKAGES = Path(__file__).parents[1] / "packages"
+SHORT_ROUTE = PACKAGES / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
 
 
 @pytest.fixture(autouse=True)
+def _basu(request: pytest.FixtureRequest) -> None:
+    """Set up what each test of basu and of its plugins has."""
+    if request.path.is_relative_to(PACKAGES) and request.path.relative_to(PACKAGES).parts[0].startswith("basu"):
+        for name in (
+            "_no_stand_ins",
+            "_no_server_starts_early",
+            "_pictures_where_asked",
+            "_agents_write_their_coverage",
+        ):
+            request.getfixturevalue(name)
+
+
+@pytest.fixture
 def _no_stand_ins() -> Iterator[None]:
     """Forget the modules that an agent's file brought with it: other tests' files find their own."""
     yield
-    step_back()
+    module = sys.modules.get("basu_leaderboard.replacement_modules")
+    if module is not None:
+        module.step_back()
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session")
 def _no_server_starts_early() -> Iterator[None]:
     """Have a command start its server when it drives: one that is refused, or has another server, starts none."""
     with pytest.MonkeyPatch.context() as patch:
@@ -36,7 +54,7 @@ def _no_server_starts_early() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def _pictures_where_asked(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Have drives of the shared simulator leave an empty ``path.png``, but in tests with the mark ``pictures``.
 
@@ -46,7 +64,7 @@ def _pictures_where_asked(request: pytest.FixtureRequest, monkeypatch: pytest.Mo
         monkeypatch.setattr(path_picture, "draw", lambda path, *_: path.write_bytes(b""))
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session")
 def _agents_write_their_coverage() -> Iterator[None]:
     """End the processes of agents by SIGTERM, at which they write their coverage; the benchmark would kill them."""
     yield

@@ -8,12 +8,14 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "src"
-NAME = re.compile(r"`{1,2}~?((?:linden|basu)(?:\.[A-Za-z_]\w*)+)(?:\(\))?`")
+SOURCES = sorted((ROOT / "packages").glob("*/src"))
+PACKAGES = "|".join(path.name for source in SOURCES for path in source.iterdir() if path.is_dir())
+NAME = re.compile(rf"`{{1,2}}~?((?:{PACKAGES})(?:\.[A-Za-z_]\w*)+)(?:\(\))?`")
 
 
 def test_dotted_names_in_the_source_and_the_documents_exist() -> None:
-    texts = [*SOURCE.rglob("*.py"), *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
+    code = [path for source in SOURCES for path in source.rglob("*.py")]
+    texts = [*code, *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
     dead = {
         f"{path.relative_to(ROOT)}: {name}"
         for path in texts
@@ -27,8 +29,9 @@ def test_dotted_names_in_the_source_and_the_documents_exist() -> None:
 def exists(name: str) -> bool:
     """Whether a dotted name is a module or package, or something that one of them defines or imports."""
     parts = name.split(".")
+    source = next((source for source in SOURCES if (source / parts[0]).is_dir()), ROOT)
     for length in range(len(parts), 0, -1):
-        path = SOURCE.joinpath(*parts[:length])
+        path = source.joinpath(*parts[:length])
         file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
         if file.is_file():
             return defines(file, tuple(parts[length:]))

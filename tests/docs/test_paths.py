@@ -11,8 +11,9 @@ import pytest
 from docs.pages import INLINE, PAGES, ROOT, without_fences
 
 TEXTS = [*PAGES, ROOT / "CHANGELOG.md"]
-FROM_ROOT = re.compile(r"(?<![\w/.…])((?:src|tests|scripts|examples|benchmarks|docs)/[\w./*-]*[\w*])")
-MODULE = re.compile(r"(?<![\w./-])((?:basu|linden)(?:\.\w+)+)(?!\.?[\w/])")
+FROM_ROOT = re.compile(r"(?<![\w/.…])((?:src|packages|tests|scripts|examples|benchmarks|docs)/[\w./*-]*[\w*])")
+PACKAGES = "|".join(path.parent.name for path in ROOT.glob("packages/*/src/*/__init__.py"))
+MODULE = re.compile(rf"(?<![\w./-])((?:{PACKAGES})(?:\.\w+)+)(?!\.?[\w/])")
 PART = re.compile(r"^(?:\w+/)+\w+\.(?:py|json|geojson|xodr|md)$")
 OTHERS = "outside-programs.md"  # names files of other programs
 FILES = (".osm", ".pcd", ".xml", ".xodr")  # ends of names of files, not of modules

@@ -25,7 +25,7 @@ class AgentFile(NamedTuple):
 
 
 class AgentFiles(Protocol):
-    """A reader of agents' files, the entry point of a plugin in the group ``basu.agent_files``."""
+    """A reader of agents' files, the entry point of a plugin in the group "basu.agent_files"."""
 
     def prepare(self) -> None:
         """Make the file's imports possible, before it is executed."""

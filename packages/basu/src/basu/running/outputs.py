@@ -23,7 +23,7 @@ class Drive(NamedTuple):
 
 
 class Output(Protocol):
-    """An output, the entry point of a plugin in the group ``basu.outputs``."""
+    """An output, the entry point of a plugin in the group "basu.outputs"."""
 
     def check(self, options: DriveOptions) -> None:
         """Check before a drive that what the output needs is there.
