@@ -32,7 +32,7 @@ print(json.dumps({"versions": versions(), "targets": sys.argv[1:]}))
 
 
 def plain_wheel(folder: Path, distribution: str = "linden") -> Path:
-    """Build a distribution's wheel without kernels in a folder, from a copy of the sources without what was compiled."""
+    """Build a distribution's wheel without kernels in a folder, from a copy of its sources alone."""
     copy, sources = folder / f"sources-{distribution}", ROOT / "packages" / distribution
     copy.mkdir()
     for name in SOURCES:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import linden.cli
+from basu import plugins
 from docs.pages import INLINE, PAGES, ROOT, without_fences
 
 TEXTS = [*PAGES, ROOT / "CHANGELOG.md"]
@@ -16,6 +18,8 @@ PACKAGES = "|".join(path.parent.name for path in ROOT.glob("packages/*/src/*/__i
 MODULE = re.compile(rf"(?<![\w./-])((?:{PACKAGES})(?:\.\w+)+)(?!\.?[\w/])")
 PART = re.compile(r"^(?:\w+/)+\w+\.(?:py|json|geojson|xodr|md)$")
 OTHERS = "outside-programs.md"  # names files of other programs
+GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS}
+"""Of entry points; no modules."""
 FILES = (".osm", ".pcd", ".xml", ".xodr")  # ends of names of files, not of modules
 
 
@@ -63,7 +67,8 @@ def test_each_module_or_member_exists(page: Path) -> None:
     text = re.sub(r"https?://\S+", "", page.read_text("utf-8"))
     typed = re.findall(r"^ *(?:from|import) \S+|python -m \S+", text, re.MULTILINE)
     code = " ".join([*INLINE.findall(without_fences(text)), *typed])
-    assert not sorted(name for name in set(MODULE.findall(code)) if not (name.endswith(FILES) or member_exists(name)))
+    named = {name for name in MODULE.findall(code) if not name.endswith(FILES) and name not in GROUPS}
+    assert not sorted(name for name in named if not member_exists(name))
 
 
 def member_exists(name: str) -> bool:

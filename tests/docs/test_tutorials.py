@@ -43,7 +43,7 @@ ELSEWHERE = {
 
 
 def distributions(wanted: Iterable[str]) -> Iterator[metadata.Distribution]:
-    """Yield the distributions that requirements such as ``linden-maps[unreal]`` lead to, each once for each set of extras."""
+    """Yield the distributions that requirements such as ``basu[gym]`` lead to, each once for each set of extras."""
     todo, seen = [Requirement(each) for each in wanted], set()
     while todo:
         requirement = todo.pop()
@@ -74,7 +74,7 @@ class Environment:
             program.chmod(0o755)
 
     def install(self, requirement: str) -> None:
-        """Link all that a requirement leads to; the checkout's own distributions are found where their sources are."""
+        """Link all that a requirement leads to; the distributions of this project are found where their sources are."""
         for each in distributions([requirement]):
             sources = ROOT / "packages" / each.name / "src"
             if sources.is_dir():

@@ -19,7 +19,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "rllib_training.py"
 
 @pytest.fixture(scope="module")
 def example() -> dict[str, Any]:
-    pytest.importorskip("ray.rllib", reason="RLlib is not installed; `pip install linden[rllib]` brings it")
+    pytest.importorskip("ray.rllib", reason="RLlib is not installed; `pip install basu[rllib]` brings it")
     return runpy.run_path(str(EXAMPLE))
 
 
@@ -57,7 +57,7 @@ def test_without_a_number_the_creator_makes_one_environment(
 def test_the_example_trains_and_a_lost_worker_costs_one_episode(
     example: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pytest.importorskip("torch", reason="PyTorch is not installed; `pip install linden[rllib]` brings it")
+    pytest.importorskip("torch", reason="PyTorch is not installed; `pip install basu[rllib]` brings it")
     monkeypatch.setenv("OMP_NUM_THREADS", "1")  # threads that wait take the processor from the simulators
     with connected_cluster(cpus=2):
         algorithm = example["configuration"](environments=1, runners=0, steps=48, seed=1).build_algo()

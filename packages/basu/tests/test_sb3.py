@@ -20,7 +20,7 @@ def example() -> dict[str, Any]:
 def test_the_example_trains_and_its_policy_acts_as_the_librarys(
     example: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pytest.importorskip("stable_baselines3", reason="`pip install linden[sb3]` brings Stable-Baselines3 and PyTorch")
+    pytest.importorskip("stable_baselines3", reason="`pip install basu[sb3]` brings Stable-Baselines3 and PyTorch")
     model = example["train"](example["TRAINING"][:1], 512, 1, tmp_path, n_steps=256, batch_size=64)
     assert model.num_timesteps == 512
     before, after = (np.load(tmp_path / name) for name in ("untrained.npz", "policy.npz"))

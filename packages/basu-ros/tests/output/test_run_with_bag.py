@@ -145,5 +145,5 @@ def test_without_rosbags_nothing_is_started(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "rosbags", None)
     assert main(["run", "basic", "--rosbag", "--output", str(tmp_path)]) == 2
-    assert 'pip install "linden[rosbag]"' in capsys.readouterr().err
+    assert "pip install basu-ros" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -14,7 +14,7 @@ from basu.errors import SimulatorError, UserError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-INSTALL = "SUMO is not installed; install it with: pip install 'linden[sumo]'"
+INSTALL = "SUMO is not installed; install it with: pip install basu-sumo"
 QUIET = ("--no-step-log", "--no-warnings", "--duration-log.disable")
 VERSION = (1, 20)  # the oldest with all functions used here
 NEEDED = f"at least {VERSION[0]}.{VERSION[1]} is needed"
@@ -95,7 +95,7 @@ def in_process(config: Path, *, step_s: float, seed: int, more: Sequence[str] = 
     version = str(libsumo.simulation.getVersion()[1])
     if _is_too_old(version):
         libsumo.close()
-        raise UserError(f"the libsumo that is installed is {version}; {NEEDED}: pip install --upgrade 'linden[sumo]'")
+        raise UserError(f"the libsumo that is installed is {version}; {NEEDED}: pip install --upgrade basu-sumo")
     return Link(libsumo, errors, libsumo.close)
 
 

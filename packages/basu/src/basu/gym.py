@@ -47,7 +47,7 @@ try:
 
     from basu.gym_spaces import Preview, action_space, control_from, observation_space
 except ImportError as error:
-    raise UserError("basu.gym needs gymnasium; install it with `pip install linden[gym]`") from error
+    raise UserError("basu.gym needs gymnasium; install it with `pip install basu[gym]`") from error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

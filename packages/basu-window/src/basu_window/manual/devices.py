@@ -46,7 +46,7 @@ def import_pygame() -> Any:  # noqa: ANN401 - a module that may not be there
     try:
         import pygame  # noqa: PLC0415 - an extra
     except ImportError as error:
-        raise UserError("a window for the HUD needs pygame, which is not installed; `pip install 'linden[hud]'`") from (
+        raise UserError("a window for the HUD needs pygame, which is not installed; `pip install basu-window`") from (
             error
         )
     return pygame

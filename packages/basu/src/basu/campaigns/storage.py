@@ -44,7 +44,7 @@ class Store:
         try:
             import fsspec  # noqa: PLC0415 - an extra
         except ImportError as error:
-            raise UserError(f"{address} needs fsspec; install it with `pip install linden[storage]`") from error
+            raise UserError(f"{address} needs fsspec; install it with `pip install basu[storage]`") from error
         try:
             self._files, self._root = fsspec.core.url_to_fs(self.address)
         except ImportError as error:

@@ -20,7 +20,7 @@ try:
     from ray.exceptions import RayActorError, RayError
     from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 except ImportError as error:
-    raise UserError("--ray needs Ray; install it with `pip install linden[cluster]`") from error
+    raise UserError("--ray needs Ray; install it with `pip install basu[cluster]`") from error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

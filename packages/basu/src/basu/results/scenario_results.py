@@ -120,7 +120,7 @@ class ScenarioResults:
         try:
             import pandas as pd  # noqa: PLC0415 - an extra
         except ImportError:
-            raise UserError("to_pandas() needs pandas; install it with `pip install linden[tables]`") from None
+            raise UserError("to_pandas() needs pandas; install it with `pip install basu[tables]`") from None
         rows = [
             {
                 "id": case.id,

@@ -40,7 +40,7 @@ def routes_of(lanelet_map: LaneletMap) -> Routes:
         from lanelet2 import io, projection, routing, traffic_rules  # noqa: PLC0415 - see above
     except ModuleNotFoundError:
         raise UserError(
-            "reading a map back needs the package lanelet2; install it with: pip install 'linden[autoware]'"
+            "reading a map back needs the package lanelet2; install it with: pip install 'linden-maps[autoware]'"
         ) from None
     origin = projection_of(lanelet_map.geo_reference) or NOWHERE
     with tempfile.TemporaryDirectory() as folder:

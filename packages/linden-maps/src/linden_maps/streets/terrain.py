@@ -191,4 +191,4 @@ def _check_cover(heights: F64, latitude: F64, longitude: F64, file: Path) -> Non
 
 
 def _missing(package: str) -> UserError:
-    return UserError(f"--elevation needs the package {package}; install it with: pip install 'linden[elevation]'")
+    return UserError(f"--elevation needs the package {package}; install it with: pip install 'linden-maps[elevation]'")

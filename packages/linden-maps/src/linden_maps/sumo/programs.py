@@ -22,7 +22,7 @@ def home() -> Path:
         return Path(given)
     found = importlib.util.find_spec("sumo")
     if found is None or found.origin is None:
-        raise UserError("SUMO is not installed; install it with: pip install 'linden[sumo]'")
+        raise UserError("SUMO is not installed; install it with: pip install 'linden-maps[sumo]'")
     return Path(found.origin).parent
 
 
@@ -46,8 +46,8 @@ def run(program: str, arguments: Sequence[str | Path], folder: Path) -> None:
             check=False,
         )
     except OSError as error:
-        raise UserError(f"SUMO's {program} cannot be run: {error.strerror}; reinstall with: pip install 'linden[sumo]'"
-                        ) from None  # fmt: skip
+        again = "reinstall with: pip install 'linden-maps[sumo]'"
+        raise UserError(f"SUMO's {program} cannot be run: {error.strerror}; {again}") from None
     except subprocess.TimeoutExpired:
         raise UserError(f"SUMO's {program} did not end within {LIMIT_S:.0f} s; give it a smaller map") from None
     if done.returncode != 0:

@@ -20,7 +20,7 @@ def write_usd(parts: Sequence[Part], name: str, path: Path) -> None:
         from pxr import Sdf, Usd, UsdGeom, UsdShade, Vt  # noqa: PLC0415 - an optional part
     except ModuleNotFoundError:
         raise UserError(
-            "writing USD needs the package usd-core; install it with: pip install 'linden[unreal]', or add --no-usd"
+            "writing USD needs usd-core; install it with: pip install 'linden-maps[unreal]', or add --no-usd"
         ) from None
     stage = Usd.Stage.CreateNew(str(path))
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
