@@ -1,6 +1,6 @@
 """Fixtures of the tests of basu and its plugins: a live simulator, and a short piece of a Linden street to drive on.
 
-conftest.py loads them. The automatic ones act in the tests of these distributions only.
+conftest.py of the root loads them. The automatic ones act in the tests of these distributions only.
 """
 
 import subprocess
