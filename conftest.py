@@ -26,7 +26,8 @@ if coverage.Coverage.current() is not None:
         for library in ("carla", "matplotlib.pyplot", "numba", "pandas", "pyarrow.parquet", "pydantic"):
             importlib.import_module(library)
 
-pytest_plugins = ["basu_fixtures", "campaign_fixtures"] if importlib.util.find_spec("basu") else []  # tests of linden do without basu
+pytest_plugins = ["basu_fixtures", "campaign_fixtures"] if importlib.util.find_spec("basu") else []
+"""Fixtures of several distributions; the tests of ``linden`` run where ``basu`` is not installed."""
 
 LONGEST = (
     "packages/basu/tests/running/scenario_runs/test_catalogue.py",
