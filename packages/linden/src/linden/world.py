@@ -59,7 +59,7 @@ class World:
         self._next_stream = FIRST_SENSOR_STREAM
         self.recorder = Recorder()
         self.replayer = Replayer()
-        self.sensor_scene = SensorScene(self.library)
+        self.sensor_scene = SensorScene()
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:

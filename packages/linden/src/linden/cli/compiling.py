@@ -65,12 +65,10 @@ def cameras() -> None:
 def scenery() -> None:
     """Make the meshes that sensors see on the default map."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.scenery.actors.actor_meshes_cache import keep_bodies  # noqa: PLC0415 - as in driving
     from linden.scenery.map_mesh_cache import keep_standing  # noqa: PLC0415 - as in driving
 
     cache = MapCache.of_user()
     simulation = _home_world(cache)
-    keep_bodies(simulation.library, cache)
     keep_standing(simulation.episode.map, simulation.episode.surroundings.scene, cache)
 
 

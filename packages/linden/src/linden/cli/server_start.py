@@ -13,7 +13,6 @@ from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.wire.packed import warm_up as warm_batches
 from linden.replay.file.folder import RecordingFolder
-from linden.scenery.actors.actor_meshes_cache import bodies_of, has_bodies, keep_bodies
 from linden.scenery.map_mesh_cache import has_standing, keep_standing, standing_of
 from linden.sensors.casting.caster import CPU
 from linden.server import frames
@@ -66,7 +65,6 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
     first_start.step("the world")
     simulation.sensor_scene.device = arguments.device
     simulation.sensor_scene.standing_on = partial(standing_of, cache=cache)
-    simulation.sensor_scene.bodies_of = partial(bodies_of, cache=cache)
     simulation.sensor_scene.await_kernels, simulation.sensor_scene.is_compiling = (
         first_start.await_sensors,
         first_start.is_compiling,
@@ -75,10 +73,9 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
     first_start.step("the walking mesh")
     first_start.finish_physics()
     scene = simulation.episode.surroundings.scene
-    is_home, is_kept = arguments.map == HOME_MAP, has_bodies(cache) and has_standing(world_map, scene, cache)
+    is_home, is_kept = arguments.map == HOME_MAP, has_standing(world_map, scene, cache)
     first_start.compile_sensors(scenery=is_home and not is_kept)
     if not is_home:
-        keep_bodies(simulation.library, cache)
         keep_standing(world_map, scene, cache)  # seconds, if it is not there yet
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)

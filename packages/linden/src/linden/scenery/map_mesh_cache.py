@@ -18,7 +18,7 @@ from linden.scenery.scene.objects import Scene
 _PACKAGE = Path(__file__).parent.parent
 _MAKING = (
     "scenery/*.py", "scenery/streets/*.py", "scenery/roadside/*.py", "scenery/scene/*.py", "maps/opendrive/**/*.py",
-    "maps/ground.py", "protocol/values/enums.py", "geometry.py",
+    "maps/ground.py", "data/actor_meshes.xz", "protocol/values/enums.py", "geometry.py",
 )  # fmt: skip
 _DTYPES = (np.dtype(np.float32), np.dtype(np.uint32), FACE)
 

@@ -6,7 +6,7 @@ import pytest
 from linden.blueprints.library import ANIMALS, BlueprintLibrary, Kind
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import SemanticTag
-from linden.scenery.actors.actor_meshes import SCALED, Bodies
+from linden.scenery.actors.actor_meshes import SCALED, actor_meshes
 from linden.scenery.actors.posing import WALKER_FRAMES, vehicle_frames, walker_frames
 from linden.scenery.mesh import LampOf, Material, Mesh, join
 from linden.sensors.casting.caster import Instances, Rays
@@ -22,7 +22,7 @@ EMPTY = join([])
 
 @pytest.fixture(scope="module")
 def bodies():
-    return Bodies(LIBRARY)
+    return actor_meshes()
 
 
 def description(blueprint_id, **chosen):
@@ -185,14 +185,6 @@ def test_a_mesh_of_unreals_is_a_cube_of_the_given_size(bodies):
 def test_what_cannot_be_seen_has_no_parts(bodies):
     assert bodies.parts(description("sensor.other.gnss")) == ()
     assert bodies.parts(description("controller.ai.walker")) == ()
-
-
-def test_two_libraries_give_the_same_bytes(bodies):
-    again = Bodies(BlueprintLibrary.load())
-    for one, other in zip(bodies.meshes, again.meshes, strict=True):
-        assert one.vertices_m.tobytes() == other.vertices_m.tobytes()
-        assert one.triangles.tobytes() == other.triangles.tobytes()
-        assert one.faces.tobytes() == other.faces.tobytes()
 
 
 def test_an_animal_is_one_part_with_the_tag_of_what_moves(bodies):

@@ -8,7 +8,6 @@ import pytest
 from fakes.solids import box, described, floor
 from home_map import home_map
 from linden.background import checkpoint
-from linden.blueprints.library import BlueprintLibrary
 from linden.geometry import compose, rotation_matrix
 from linden.maps.library import LoadedMap, MapLibrary
 from linden.protocol.values.enums import TrafficLightState
@@ -33,7 +32,7 @@ def world_map() -> LoadedMap:
 def sensor_scene(world_map: LoadedMap) -> SensorScene:
     """For all episodes: what stands is a floor, and a box for the last box of the scene."""
     last = len(World(world_map).episode.surroundings.scene.boxes) - 1
-    sensor_scene = SensorScene(BlueprintLibrary.load())
+    sensor_scene = SensorScene()
     sensor_scene.standing_on = lambda _map, _scene: join(
         [floor(2000.0), box((1.0, 1.0, 1.0), centre_m=(0.0, 0.0, 500.0), thing=last)]
     )
@@ -207,7 +206,7 @@ def test_a_reading_does_not_depend_on_earlier_listeners(simulation: World, world
 
 
 def test_a_thread_that_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
-    sensor_scene, may_build = SensorScene(BlueprintLibrary.load()), Event()
+    sensor_scene, may_build = SensorScene(), Event()
     assert sensor_scene.wait(60.0)  # without any request
 
     def standing_on(*_: object) -> Mesh:
@@ -247,7 +246,7 @@ def test_a_load_of_another_map_gives_up_what_was_being_built(world_map: LoadedMa
 
 def test_a_lidar_does_not_wait_for_the_kernels_of_cameras(world_map: LoadedMap, sensor_scene: SensorScene) -> None:
     simulation, waited = World(world_map, EpisodeSettings()), list[bool]()
-    own = SensorScene(simulation.library)
+    own = SensorScene()
     own.standing_on, own.await_kernels, own.is_compiling = sensor_scene.standing_on, waited.append, lambda: True
     simulation.sensor_scene = own
     simulation.spawn(described("sensor.lidar.ray_cast"), Transform())

@@ -1,81 +1,45 @@
-"""Meshes of all actors of a blueprint library, and the bone or wheel that each part follows."""
+"""Meshes of all actors, read from the asset that the package holds, and the bone or wheel that each part follows.
 
-from collections.abc import Callable
+``linden_maps.models`` makes the asset, ``data/actor_meshes.xz``. It holds, compressed, the number of vertices and
+triangles of each mesh and the parts of each actor as JSON, and then all arrays.
+"""
+
+import json
+import lzma
+from functools import cache
+from importlib import resources
 from typing import NamedTuple
 
-from linden.blueprints.library import ANIMALS, Blueprint, BlueprintLibrary, Kind
+import numpy as np
+
 from linden.protocol.values.actors import ActorDescription
-from linden.scenery.actors.animals import animal
-from linden.scenery.actors.cars import car, shuttle
-from linden.scenery.actors.heavy import ambulance, bus, firetruck, freight_truck
-from linden.scenery.actors.people import in_wheelchair, walker
-from linden.scenery.actors.solids import Shape
-from linden.scenery.actors.two_wheelers import two_wheeler, wheelchair
-from linden.scenery.mesh import Mesh
-from linden.scenery.props.models import prop
+from linden.scenery.mesh import FACE, Mesh
 
-_OF_ITS_OWN: dict[str, Callable[[Blueprint], list[Shape]]] = {
-    "vehicle.carlamotors.carlacola": freight_truck,
-    "vehicle.carlamotors.european_hgv": freight_truck,
-    "vehicle.carlamotors.firetruck": firetruck,
-    "vehicle.easymile.ez10": shuttle,
-    "vehicle.ford.ambulance": ambulance,
-    "vehicle.mitsubishi.fusorosa": bus,
-}
-
-
-def vehicle(blueprint: Blueprint) -> dict[str, list[Shape]]:
-    """Return the parts of a vehicle: by ``driver_id`` where there is a rider to be seen, otherwise under ""."""
-    assert blueprint.vehicle is not None
-    if len(blueprint.vehicle.wheel_offsets_m) == 2:
-        return two_wheeler(blueprint)
-    return {"": _OF_ITS_OWN.get(blueprint.definition.id, car)(blueprint)}
-
-
+ASSET = "data/actor_meshes.xz"
 SCALED = "static.prop.mesh"
 """The one blueprint with a size that the client chooses at the spawn."""
+_HEAD = 16
+"""Digits of the length of the JSON text."""
 
 
 class Part(NamedTuple):
     """A mesh of an actor, the frame that it stands in, and its own colour where it has one."""
 
-    mesh: int  # row of Bodies.meshes
+    mesh: int  # row of BlueprintMeshes.meshes
     frame: int  # of posing.VEHICLE_FRAMES or WALKER_FRAMES; 0 is the actor's own
     colour: tuple[int, int, int] | None = None  # of painted faces; None where they have the actor's
     scale: float = 1.0  # how many times larger it is seen
 
 
-class Bodies:
-    """The meshes of all blueprints; what several share is there once.
+class BlueprintMeshes(NamedTuple):
+    """The meshes of all blueprints. Parts that have the same mesh name the same row."""
 
-    Attributes:
-        meshes: one for each row that parts name.
-        all_parts: those of each blueprint and value of what tells its actors apart, "" the plain ones.
-    """
-
-    def __init__(self, library: BlueprintLibrary) -> None:
-        self.meshes: list[Mesh] = []
-        self._row_of: dict[int, int] = {}  # by the mesh's own identity, so that nothing is compared
-        self.all_parts: dict[tuple[str, str], tuple[Part, ...]] = {}
-        for blueprint in library:
-            for choice, shapes in _shapes(blueprint).items():
-                self.all_parts[blueprint.definition.id, choice] = tuple(map(self._part, shapes))
-
-    @classmethod
-    def kept(cls, meshes: list[Mesh], all_parts: dict[tuple[str, str], tuple[Part, ...]]) -> "Bodies":
-        """Return what was made before."""
-        bodies = cls.__new__(cls)
-        bodies.meshes, bodies.all_parts = meshes, all_parts
-        return bodies
-
-    def _part(self, shape: Shape) -> Part:
-        row = self._row_of.setdefault(id(shape.mesh), len(self.meshes))
-        if row == len(self.meshes):
-            self.meshes.append(shape.mesh)
-        return Part(row, shape.frame, shape.colour)
+    meshes: list[Mesh]
+    all_parts: dict[tuple[str, str], tuple[Part, ...]]
+    """The parts by blueprint and by the attribute value that changes the actor's look; "" for the plain look."""
 
     def parts(self, description: ActorDescription) -> tuple[Part, ...]:
-        """Return the parts of an actor that was spawned so; none for what cannot be seen (sensors, controllers)."""
+        """Return the parts of an actor with this description; none for invisible actors (sensors, controllers)."""
         chosen = description.attribute("driver_id") or description.attribute("use_wheelchair")
         plain = self.all_parts.get((description.id, ""), ())
         parts = self.all_parts.get((description.id, chosen), plain)
@@ -85,16 +49,39 @@ class Bodies:
         return tuple(part._replace(scale=scale) for part in parts)
 
 
-def _shapes(blueprint: Blueprint) -> dict[str, list[Shape]]:
-    """Return the parts of a blueprint's actors by the value of what tells them apart, "" the plain ones."""
-    if blueprint.kind is Kind.VEHICLE:
-        return vehicle(blueprint)
-    if blueprint.definition.id.startswith(ANIMALS):
-        return {"": animal(blueprint)}
-    if blueprint.kind is Kind.WALKER:
-        can_sit = any(
-            "true" in a.recommended_values for a in blueprint.definition.attributes if a.id == "use_wheelchair"
+@cache
+def actor_meshes() -> BlueprintMeshes:
+    """Return the meshes of the package's blueprints; their arrays are read-only."""
+    return decoded(lzma.decompress(resources.files("linden").joinpath(ASSET).read_bytes()))
+
+
+def encoded(bodies: BlueprintMeshes) -> bytes:
+    """Return the content of the asset, before its compression."""
+    counts = [(len(mesh.vertices_m), len(mesh.triangles)) for mesh in bodies.meshes]
+    parts = [(*named, chosen) for named, chosen in bodies.all_parts.items()]
+    text = json.dumps([counts, parts]).encode()
+    text += b" " * (-len(text) % _HEAD)  # Embree reads the arrays in place and requires that they are aligned
+    columns = zip(zip(*bodies.meshes, strict=True), (np.float32, np.uint32, FACE), strict=True)
+    arrays = [np.concatenate(column).astype(kind) for column, kind in columns]
+    return b"".join([f"{len(text):{_HEAD}}".encode(), text, *(array.tobytes() for array in arrays)])
+
+
+def decoded(content: bytes) -> BlueprintMeshes:
+    """Return the meshes that ``encoded`` wrote."""
+    start = _HEAD + int(content[:_HEAD])
+    counts, parts = json.loads(content[_HEAD:start])
+    corners, triangles = map(sum, zip(*counts, strict=True))
+    vertices_m = np.frombuffer(content, np.float32, 3 * corners, start).reshape(-1, 3)
+    rows = np.frombuffer(content, np.uint32, 3 * triangles, start + vertices_m.nbytes).reshape(-1, 3)
+    faces = np.frombuffer(content, FACE, triangles, start + vertices_m.nbytes + rows.nbytes)
+    meshes, at, face = list[Mesh](), 0, 0
+    for many, count in counts:
+        meshes.append(Mesh(vertices_m[at : at + many], rows[face : face + count], faces[face : face + count]))
+        at, face = at + many, face + count
+    all_parts = {
+        (blueprint, choice): tuple(
+            Part(mesh, frame, colour and tuple(colour), scale) for mesh, frame, colour, scale in found
         )
-        seated = {"true": in_wheelchair(blueprint, wheelchair())} if can_sit else {}
-        return {"": walker(blueprint), **seated}
-    return {"": prop(blueprint)} if blueprint.kind is Kind.PROP else {}
+        for blueprint, choice, found in parts
+    }
+    return BlueprintMeshes(meshes, all_parts)

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.protocol.values.enums import SemanticTag
+from linden.scenery.actors.actor_meshes import actor_meshes
 from linden.scenery.mesh import LampOf, Material, Mesh, join
 from linden.scenery.patches import WALLS, Frames, Look, boxes
-from linden.scenery.props import street
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -18,11 +18,8 @@ _MOST_STOREYS = 40
 _SILL_M, _PANE_M = 1.0, 1.3  # of a window: how far above its floor, how high
 _PROUD_M = 0.02  # of the wall
 _MARGIN = 0.85  # of a wall's length that its row of windows takes
-_FURNITURE = {
-    "bench": street.bench(back=True),
-    "bin": street.wheeled_bin((40, 90, 60)),
-    "mailbox": street.mailbox,
-}
+_FURNITURE = {"bench": "static.prop.bench01", "bin": "static.prop.bin", "mailbox": "static.prop.mailbox"}
+"""The prop that stands for each kind of furniture."""
 
 
 def buildings(parts: Frames, half_m: F64, building: NDArray[np.intp], objects: I32) -> Mesh:
@@ -60,12 +57,13 @@ def _windows(parts: Frames, half_m: F64, objects: I32) -> list[Mesh]:
 
 def furniture(kind: str, frames: Frames, half_m: F64, objects: I32) -> Mesh:
     """Return benches, bins or mailboxes that fill boxes of these half sizes (N, 3)."""
-    made = []
-    for row in range(len(frames)):
-        length_m, width_m, height_m = (2.0 * half_m[row]).tolist()
-        model = join(_FURNITURE[kind](length_m, width_m, height_m))
-        placed = frames.of(np.array([row])).world(model.vertices_m.astype(np.float64)[None])[0]
-        faces = model.faces.copy()
-        faces["object"], faces["tag"] = objects[row], SemanticTag.STATIC
-        made.append(Mesh(placed.astype(np.float32), model.triangles, faces))
-    return join(made)
+    models = actor_meshes()
+    [part] = models.all_parts[_FURNITURE[kind], ""]
+    model = models.meshes[part.mesh]
+    low, high = model.vertices_m.min(0), model.vertices_m.max(0)
+    foot = 0.5 * (low + high) * (1.0, 1.0, 0.0) + low * (0.0, 0.0, 1.0)
+    shares = (model.vertices_m - foot) / (high - low)  # of the model's size
+    placed = frames.world(2.0 * half_m[:, None] * shares).astype(np.float32)
+    faces = np.tile(model.faces, (len(placed), 1))
+    faces["object"], faces["tag"] = objects[:, None], SemanticTag.STATIC
+    return join([Mesh(vertices_m, model.triangles, each) for vertices_m, each in zip(placed, faces, strict=True)])

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.background import in_background
-from linden.scenery.actors.actor_meshes import Bodies
+from linden.scenery.actors.actor_meshes import BlueprintMeshes
 from linden.scenery.mesh import NO_OBJECT, Mesh
 from linden.sensors.camera.picture.rgb import looks_of
 from linden.sensors.casting.caster import CPU
@@ -20,7 +20,7 @@ from linden.sensors.view import table_of
 from linden.sensors.warming import warm_cameras, warm_rays
 
 
-def build(wanted: SceneKey, whole: Mesh, bodies: Bodies, device: str) -> BuiltScene:
+def build(wanted: SceneKey, whole: Mesh, bodies: BlueprintMeshes, device: str) -> BuiltScene:
     """Return the scene. The caster is built in parallel to the tables that a colour picture needs."""
     standing = present_of(whole, wanted.present)
     caster = in_background(lambda: caster_of(standing, bodies.meshes, device))

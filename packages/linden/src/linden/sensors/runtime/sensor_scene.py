@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.background import Unwanted, in_background
-from linden.blueprints.library import BlueprintLibrary, Kind
+from linden.blueprints.library import Kind
 from linden.maps.library import LoadedMap
 from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
@@ -19,7 +19,7 @@ from linden.sensors.runtime.visible_actors import VisibleActors
 from linden.sensors.view import NO_ACTOR_FROM, Seen
 
 if TYPE_CHECKING:
-    from linden.scenery.actors.actor_meshes import Bodies
+    from linden.scenery.actors.actor_meshes import BlueprintMeshes
     from linden.simulation.episode import Episode
 
 U32 = NDArray[np.uint32]
@@ -37,11 +37,10 @@ def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     return map_mesh.standing_on(world_map, scene)
 
 
-def bodies_of(library: BlueprintLibrary) -> "Bodies":
-    """Return the meshes of a library's actors; made anew each time."""
-    from linden.scenery.actors.actor_meshes import Bodies  # noqa: PLC0415 - as in standing_on
+def _read_bodies() -> "BlueprintMeshes":
+    from linden.scenery.actors.actor_meshes import actor_meshes  # noqa: PLC0415 - as in standing_on
 
-    return Bodies(library)
+    return actor_meshes()
 
 
 class SensorScene:
@@ -51,22 +50,19 @@ class SensorScene:
 
     Attributes:
         standing_on: gives the mesh of what stands on a map, anew or out of a cache.
-        bodies_of: gives the meshes of a library's actors, likewise.
         when_built: called when what was being built is there, or will not be; by any thread.
         await_kernels: waits until the kernels of rays are compiled, or those of pictures (True) too.
         is_compiling: tells whether kernels of pictures are still being compiled.
         device: where rays are cast: "cpu", or a GPU as Warp names it, "cuda".
     """
 
-    def __init__(self, library: BlueprintLibrary) -> None:
+    def __init__(self) -> None:
         self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
         self.device = CPU
         self.when_built: Callable[[], None] = lambda: None
-        self.bodies_of: Callable[[BlueprintLibrary], Bodies] = bodies_of
         self.await_kernels: Callable[[bool], None] = lambda pictures: None  # noqa: ARG005 - all are compiled
         self.is_compiling: Callable[[], bool] = lambda: False
-        self._library = library
-        self._bodies: Future[Bodies] | None = None
+        self._bodies: Future[BlueprintMeshes] | None = None
         self._visible_actors: VisibleActors | None = None
         self._whole: tuple[Scene, Mesh] | None = None
         self._scene: BuiltScene | None = None
@@ -139,12 +135,12 @@ class SensorScene:
             now_s=episode.elapsed_s,
         )
 
-    def _all_bodies(self) -> "Bodies":
+    def _all_bodies(self) -> "BlueprintMeshes":
         return self._bodies_coming().result()
 
-    def _bodies_coming(self) -> "Future[Bodies]":
+    def _bodies_coming(self) -> "Future[BlueprintMeshes]":
         if self._bodies is None:
-            self._bodies = in_background(lambda: self.bodies_of(self._library))
+            self._bodies = in_background(_read_bodies)
         return self._bodies
 
     def _is_built(self, episode: "Episode") -> bool:
@@ -163,7 +159,7 @@ class SensorScene:
         return self._scene
 
     def _built(
-        self, wanted: SceneKey, bodies: "Future[Bodies]", before: "tuple[SceneKey, Future[BuiltScene]] | None"
+        self, wanted: SceneKey, bodies: "Future[BlueprintMeshes]", before: "tuple[SceneKey, Future[BuiltScene]] | None"
     ) -> BuiltScene:
         """Return the wanted scene, after the build of the previous one has ended."""
         if before is not None:

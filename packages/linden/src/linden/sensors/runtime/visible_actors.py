@@ -13,7 +13,7 @@ from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.bones import bones_of
 
 if TYPE_CHECKING:
-    from linden.scenery.actors.actor_meshes import Bodies
+    from linden.scenery.actors.actor_meshes import BlueprintMeshes
     from linden.simulation.episode import Episode
 
 F64 = NDArray[np.float64]
@@ -58,7 +58,7 @@ class _ActorRows(NamedTuple):
 class VisibleActors:
     """Gathers bodies frame by frame."""
 
-    def __init__(self, bodies: "Bodies") -> None:
+    def __init__(self, bodies: "BlueprintMeshes") -> None:
         self._bodies = bodies
         self._rows: _ActorRows | None = None
         self._version = -1
@@ -137,7 +137,7 @@ def matrices(pose: F64) -> F64:
     return made
 
 
-def _survey(episode: "Episode", bodies: "Bodies") -> _ActorRows:
+def _survey(episode: "Episode", bodies: "BlueprintMeshes") -> _ActorRows:
     actors = episode.actors
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]

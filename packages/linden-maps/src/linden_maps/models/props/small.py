@@ -3,8 +3,8 @@
 import math
 from collections.abc import Callable
 
-from linden.scenery.actors.fittings import ABOUT_Y, hoop
-from linden.scenery.actors.solids import (
+from linden_maps.models.fittings import ABOUT_Y, hoop
+from linden_maps.models.solids import (
     BLACK,
     GLASS,
     STEEL,

@@ -5,7 +5,7 @@ double glass door on either side.
 """
 
 from linden.blueprints.library import Blueprint
-from linden.scenery.actors.fittings import (
+from linden_maps.models.fittings import (
     cockpit,
     front,
     handles,
@@ -17,8 +17,8 @@ from linden.scenery.actors.fittings import (
     underside,
     wheel,
 )
-from linden.scenery.actors.hull import PROUD_M, Frame, Silhouette, half_width, hull, silhouettes, top
-from linden.scenery.actors.solids import (
+from linden_maps.models.hull import PROUD_M, Frame, Silhouette, half_width, hull, silhouettes, top
+from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
     BLINKER_RIGHT,

@@ -6,10 +6,10 @@ from typing import NamedTuple
 from linden.blueprints.library import Blueprint
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import Vector3D
-from linden.scenery.actors.fittings import hoop, spoked_wheel
-from linden.scenery.actors.people import figure, outfit
+from linden_maps.models.fittings import hoop, spoked_wheel
+from linden_maps.models.people import figure, outfit
 from linden.scenery.actors.posing import FORK
-from linden.scenery.actors.solids import (
+from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
     BLINKER_RIGHT,

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar, cast
 import numpy as np
 
 from linden.protocol.values.enums import SemanticTag
-from linden.scenery.actors.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
+from linden_maps.models.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
 from linden.scenery.mesh import Material, Mesh, join
 
 Colour = tuple[int, int, int]

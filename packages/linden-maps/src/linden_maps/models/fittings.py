@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from linden.scenery.actors.hull import F64, PROUD_M, Frame, Silhouette, half_width, ring_heights, top
-from linden.scenery.actors.solids import (
+from linden_maps.models.hull import F64, PROUD_M, Frame, Silhouette, half_width, ring_heights, top
+from linden_maps.models.solids import (
     BEACON_BLUE,
     BEACON_RED,
     BLACK,

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.scenery.actors.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
+from linden_maps.models.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
 from linden.scenery.mesh import Mesh
 from linden.structured import StructuredArray
 
@@ -39,7 +39,7 @@ class Silhouette(NamedTuple):
 @lru_cache(maxsize=1)
 def silhouettes() -> dict[str, Silhouette]:
     """Return the silhouette of each blueprint that has one, by its id."""
-    facts = json.loads(resources.files("linden").joinpath("data/silhouettes.json").read_text("utf-8"))
+    facts = json.loads(resources.files("linden_maps").joinpath("data/silhouettes.json").read_text("utf-8"))
     styles = {name: _silhouette(own) for name, own in facts["styles"].items()}
     return {blueprint_id: styles[style] for blueprint_id, style in facts["bodies"].items()}
 

@@ -2,7 +2,7 @@
 
 import math
 
-from linden.scenery.actors.solids import (
+from linden_maps.models.solids import (
     BLACK,
     RUBBER,
     STEEL,

@@ -10,10 +10,10 @@ from linden.blueprints.library import Blueprint
 from linden.geometry import rotation_matrix
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import Rotation
-from linden.scenery.actors import limbs
-from linden.scenery.actors.limbs import Build, Colour
+from linden_maps.models import limbs
+from linden_maps.models.limbs import Build, Colour
 from linden.scenery.actors.posing import WALKER_FRAMES
-from linden.scenery.actors.solids import Shape, moved, tagged, turned
+from linden_maps.models.solids import Shape, moved, tagged, turned
 from linden.scenery.mesh import Mesh, join
 
 F64 = NDArray[np.float64]

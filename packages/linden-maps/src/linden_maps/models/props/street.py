@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from linden.scenery.actors.fittings import hoop
-from linden.scenery.actors.solids import (
+from linden_maps.models.fittings import hoop
+from linden_maps.models.solids import (
     BLACK,
     GLASS,
     STEEL,

@@ -9,8 +9,8 @@ import pytest
 from fakes.solids import volume_m3
 from linden.geometry import rotation_matrix
 from linden.protocol.values.space import Rotation
-from linden.scenery.actors.fittings import hoop
-from linden.scenery.actors.solids import (
+from linden_maps.models.fittings import hoop
+from linden_maps.models.solids import (
     Look,
     ball,
     bounds,

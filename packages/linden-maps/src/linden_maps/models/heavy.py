@@ -1,10 +1,10 @@
 """Buses, trucks and ambulances: a cab or a whole hull, with what they carry behind it."""
 
 from linden.blueprints.library import Blueprint
-from linden.scenery.actors.cars import frame_of, wheels
-from linden.scenery.actors.fittings import beacons, front, mirrors, pair, plaque, rear, underside
-from linden.scenery.actors.hull import PROUD_M, Frame, Silhouette, hull, ring_heights, silhouettes
-from linden.scenery.actors.solids import (
+from linden_maps.models.cars import frame_of, wheels
+from linden_maps.models.fittings import beacons, front, mirrors, pair, plaque, rear, underside
+from linden_maps.models.hull import PROUD_M, Frame, Silhouette, hull, ring_heights, silhouettes
+from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
     BLINKER_RIGHT,

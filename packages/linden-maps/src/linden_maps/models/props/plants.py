@@ -2,7 +2,7 @@
 
 import math
 
-from linden.scenery.actors.solids import Look, ball, box, lathe, rod, stretched, tube
+from linden_maps.models.solids import Look, ball, box, lathe, rod, stretched, tube
 from linden.scenery.mesh import Material, Mesh
 
 _BARK = Look(Material.BARK, (92, 72, 54))
