@@ -36,6 +36,14 @@ class Says(Criterion):
         return self.says(played, self.passed, f"because of {self.name}", tick=self.tick)
 
 
+def test_the_message_of_a_case_says_that_a_person_drove() -> None:
+    case = played(driven(at(10.0, 12.0), route=straight_route(100.0)), outcome=ENDED)
+    case.history.frames["manual"][40:] = 1
+    found = judge(CRITERIA, case, ENDED, triggered=True)
+    assert found.verdict is Verdict.SUCCESS
+    assert found.message.endswith("; driven by hand on a part of the way")
+
+
 def test_meeting_every_criterion_is_success() -> None:
     found = judge(CRITERIA, ARRIVED, ENDED, triggered=True)
     assert (found.verdict, found.fault) == (Verdict.SUCCESS, Fault.NONE)

@@ -30,8 +30,18 @@ def test_an_expected_subscriber_that_does_not_come_is_given_up() -> None:
 def test_a_repeated_request_makes_no_frame_wait_longer() -> None:
     expected = Expected()
     expected.asked(3, CLIENT, 10.0)
-    expected.asked(3, OTHER, 10.4)
+    expected.asked(3, CLIENT, 10.4)
     assert expected.wait_s(10.4) == pytest.approx(SUBSCRIPTION_WAIT_S - 0.4)
+
+
+def test_a_subscription_of_one_client_does_not_end_the_wait_for_another_on_the_same_stream() -> None:
+    expected = Expected()
+    expected.asked(3, CLIENT, 10.0)
+    expected.asked(3, OTHER, 10.1)
+    expected.came(3)
+    assert expected.wait_s(10.1) == SUBSCRIPTION_WAIT_S
+    expected.came(3)
+    assert expected.wait_s(10.1) is None
 
 
 def test_a_client_that_failed_to_come_a_few_times_is_not_waited_for_until_it_comes_once() -> None:

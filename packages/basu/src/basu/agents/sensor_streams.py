@@ -90,7 +90,6 @@ class SensorStreams:
         self._sensors: list[tuple[SpawnedSensor, Any]] = []
         self._news = threading.Condition()
         self._latest: dict[str, tuple[int, Any]] = {}
-        self._late: set[str] = set()  # sensors that were waited for in vain once
 
     def listen(self, sensor: SpawnedSensor, actor: carla.Sensor) -> None:
         """Listen to one more sensor.
@@ -109,12 +108,8 @@ class SensorStreams:
         """
         with self._news:
             if not self._news.wait_for(lambda: not self._missing(frame), timeout=self._timeout_s):
-                # Frames of a sensor with a ``sensor_tick`` may count from a frame before the client subscribed.
-                periodic = {sensor.id for sensor, _ in self._sensors if sensor.period_ticks > 1}
-                silent = [each for each in self._missing(frame) if each not in periodic or each in self._late]
-                if silent:
-                    raise SensorSilentError(f"sensor {', '.join(silent)} did not answer for frame {frame} in time")
-                self._late.update(self._missing(frame))
+                silent = ", ".join(self._missing(frame))
+                raise SensorSilentError(f"sensor {silent} did not answer for frame {frame} in time")
             return {sensor.id: self._measured(sensor) for sensor, _ in self._sensors if sensor.id in self._latest}
 
     def stop(self) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 import random
-import socket
 from typing import TYPE_CHECKING
 
 import carla
@@ -14,6 +13,7 @@ import numpy as np
 from basu import client_threads
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
+from basu.traffic_ports import free_traffic_port
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -207,7 +207,7 @@ class TrafficManager(BaseManager):
         The next tick of the world waits for a synchronous step, and so ends the asynchronous one.
         """
         client_threads.hold()
-        self._manager = self._run.client.get_trafficmanager(_free_port())
+        self._manager = self._run.client.get_trafficmanager(free_traffic_port())
         self._manager.set_synchronous_mode(True)
         self._manager.set_random_device_seed(self._run.seed)
         self._manager.set_global_distance_to_leading_vehicle(GAP_M)
@@ -268,10 +268,3 @@ def _painted(model: carla.ActorBlueprint, dice: random.Random) -> carla.ActorBlu
         model.set_attribute("color", dice.choice(list(model.get_attribute("color").recommended_values)))
     model.set_attribute("role_name", "autopilot")
     return model
-
-
-def _free_port() -> int:
-    """A port without a listener."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

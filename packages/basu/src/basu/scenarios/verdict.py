@@ -53,6 +53,7 @@ FAULT_OF = {
     Verdict.BENCHMARK_FAULT: Fault.BENCHMARK,
     Verdict.INTERRUPTED: Fault.USER,
 }
+BY_HAND = "driven by hand on a part of the way"
 BROKEN = (Status.AGENT_CRASHED, Status.AGENT_TIMED_OUT, Status.AGENT_INVALID_CONTROL)
 ELSEWHERE = {
     Fault.SIMULATOR: Verdict.SIMULATOR_FAULT,
@@ -119,6 +120,8 @@ def judge(
         or _never_triggered(played, triggered=triggered)
         or _of_driving(assessment, judgements[: len(criteria)])
     )
+    if played.history.frames["manual"].any():
+        message = f"{message}; {BY_HAND}"
     return Judged(verdict, message, judgements, margins_of(judgements), outcome, assessment, _collisions(played))
 
 

@@ -15,6 +15,7 @@ from basu.agents.process.endings import Ending, ended_how, ended_outside, memory
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import AgentInProcess, RemoteAgent, find_agent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
+from basu.traffic_ports import TRAFFIC_PORTS, free_traffic_port
 
 AGENT = """
 import json, os, resource, signal, socket, struct, subprocess, sys, threading, time
@@ -209,9 +210,9 @@ def test_other_processes_can_be_neither_limited_nor_seen(tmp_path: Path, deed: s
         other.communicate(b"\n")
 
 
-def test_output_is_bounded_in_each_run(tmp_path: Path) -> None:
+def test_output_is_bounded_in_each_run_and_steers_no_terminal(tmp_path: Path) -> None:
     path = tmp_path / "cheat.py"
-    path.write_text(AGENT.replace("DEED", "os.write(1, b'x' * 30_000_000); os.write(2, b'last words')"))
+    path.write_text(AGENT.replace("DEED", "os.write(1, b'x' * 30_000_000); os.write(2, b'\\x1b[2Jlast words')"))
     program = (
         "from basu.agents.process.remote_agent import RemoteAgent, find_agent\n"
         f"found = find_agent({str(path)!r})\n"
@@ -222,7 +223,7 @@ def test_output_is_bounded_in_each_run(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr.decode()
     assert 0 < len(done.stdout) <= 2 << 20
     assert done.stderr.count(b"the agent wrote more than 1 MB in this run") == 2
-    assert done.stderr.count(b"last words") == 2
+    assert done.stderr.count(b"?[2Jlast words") == 2
 
 
 def test_the_confinement_that_holds_is_known_and_said(tmp_path: Path) -> None:
@@ -276,8 +277,15 @@ def test_an_agent_that_scans_for_the_simulator_finds_the_gate_alone(tmp_path: Pa
 
 
 def test_ports_are_closed_for_a_simulator_that_is_not_ours() -> None:
-    assert closed_ports("10.0.0.1", 2000, is_open=False) == (2000, 2001, 2002)
-    assert closed_ports("10.0.0.1", 2000, is_open=True) == closed_ports(None, 2000, is_open=False) == ()
+    assert closed_ports("10.0.0.1", 2000, is_open=False) == (2000, 2001, 2002, *TRAFFIC_PORTS)
+    assert closed_ports("10.0.0.1", 2000, is_open=True) == ()
+
+
+def test_ports_of_traffic_managers_are_closed_on_every_simulator() -> None:
+    assert closed_ports(None, 2000, is_open=False) == tuple(TRAFFIC_PORTS)
+    ports = [free_traffic_port() for _ in range(3)]
+    assert len(set(ports)) == 3
+    assert set(ports) <= set(TRAFFIC_PORTS)
 
 
 def test_only_a_record_of_the_kernel_excuses_a_kill_and_no_agent_that_used_the_memory_up() -> None:

@@ -5,10 +5,10 @@ every message is sent. Up to :data:`QUEUED_BYTES` wait for each subscriber, and 
 all together. A subscriber with more is congested. No frame is made while a subscriber is congested, and after
 :data:`PATIENCE_S` its connection is closed.
 
-A stream is expected from a client's request for its token until that client subscribes. The official client calls
-``get_sensor_token`` in ``listen()``, subscribes in a thread of its own, and may tick before that thread has connected.
-CARLA's frames take so long that the subscription comes first. Here the frame waits, so that a sensor measures from the
-first tick after ``listen()`` on. The caller passes the time.
+A subscription is expected from a client's request for a stream's token until that client subscribes. The official
+client calls ``get_sensor_token`` in ``listen()``, subscribes in a thread of its own, and may tick before that thread
+has connected. CARLA's frames take so long that the subscription comes first. Here the frame waits, so that a sensor
+measures from the first tick after ``listen()`` on. The caller passes the time.
 """
 
 import logging
@@ -148,39 +148,44 @@ MOST_IN_VAIN = 3
 
 
 class _Wait(NamedTuple):
+    stream_id: int
     client: int
-    until_s: float
 
 
 class Expected:
-    """Streams with a requested token and no subscription yet. All times in s of one steady clock."""
+    """Streams with a requested token and no subscription yet. All times in s of one steady clock.
+
+    Each client that requested a stream's token is expected to subscribe. A subscription does not name its client, so
+    it ends the earliest wait for its stream.
+    """
 
     def __init__(self) -> None:
-        self._waits: dict[int, _Wait] = {}
+        self._until_s: dict[_Wait, float] = {}
         self._in_vain: Counter[int] = Counter()
 
     def asked(self, stream_id: int, client: int, now_s: float) -> None:
         """Note that a client wants to know where a stream is; a second request does not extend the wait."""
-        if stream_id not in self._waits and self._in_vain[client] < MOST_IN_VAIN:
-            self._waits[stream_id] = _Wait(client, now_s + SUBSCRIPTION_WAIT_S)
+        if self._in_vain[client] < MOST_IN_VAIN:
+            self._until_s.setdefault(_Wait(stream_id, client), now_s + SUBSCRIPTION_WAIT_S)
 
     def came(self, stream_id: int) -> None:
         """Note that a client has subscribed to it."""
-        wait = self._waits.pop(stream_id, None)
+        wait = next((each for each in self._until_s if each.stream_id == stream_id), None)
         if wait is not None:
+            del self._until_s[wait]
             self._in_vain.pop(wait.client, None)
 
     def forget(self, client: int) -> None:
         """Note that a client has gone; the streams that it expected need not be waited for."""
         self._in_vain.pop(client, None)
-        self._waits = {stream_id: wait for stream_id, wait in self._waits.items() if wait.client != client}
+        self._until_s = {wait: until_s for wait, until_s in self._until_s.items() if wait.client != client}
 
     def wait_s(self, now_s: float) -> float | None:
         """Return how long the next frame waits at most; None where no subscriber is expected, or not any more."""
-        if not self._waits:
+        if not self._until_s:
             return None
-        for stream_id, wait in tuple(self._waits.items()):
-            if wait.until_s <= now_s:
-                del self._waits[stream_id]
+        for wait, until_s in tuple(self._until_s.items()):
+            if until_s <= now_s:
+                del self._until_s[wait]
                 self._in_vain[wait.client] += 1
-        return max(wait.until_s for wait in self._waits.values()) - now_s if self._waits else None
+        return max(self._until_s.values()) - now_s if self._until_s else None

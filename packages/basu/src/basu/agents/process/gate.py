@@ -12,6 +12,7 @@ import subprocess
 from typing import TYPE_CHECKING, Any, Protocol
 
 from basu.errors import SimulatorError
+from basu.traffic_ports import TRAFFIC_PORTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -22,11 +23,14 @@ PORTS = 3  # of a simulator: calls, streams, and its secondary server
 
 
 def closed_ports(host: str | None, port: int, *, is_open: bool) -> tuple[int, ...]:
-    """Return the ports that only a gate may use: those of a simulator at ``host``.
+    """Return the ports to which the agent's process may not connect.
 
-    None are closed if the agent may connect to it itself. A server of our own accepts its owner's connections only.
+    They are those of a simulator at ``host`` and those of the benchmark's Traffic Managers. A server of our own accepts
+    its owner's connections only. With ``--open`` none are closed.
     """
-    return () if host is None or is_open else tuple(range(port, port + PORTS))
+    if is_open:
+        return ()
+    return (*(() if host is None else range(port, port + PORTS)), *TRAFFIC_PORTS)
 
 
 class Keeper(Protocol):

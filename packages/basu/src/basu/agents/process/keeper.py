@@ -14,6 +14,7 @@ import contextlib
 import ctypes
 import json
 import os
+import re
 import select
 import signal
 import socket
@@ -32,6 +33,8 @@ PR_SET_CHILD_SUBREAPER = 36
 OUTPUT_BYTES = 1 << 20
 """What a run's agent may write to each of its two outputs; what exceeds it is thrown away."""
 CHUNK_BYTES = 1 << 16
+CONTROLS = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xc2[\x80-\x9f]")
+"""Control characters, with which an agent could write over what the benchmark prints; lines and tabs are none."""
 END_LIMIT_S = 2.0  # for killed processes to be gone
 LEFT_OUT = (
     f"\nbasu: the agent wrote more than {OUTPUT_BYTES >> 20} MB in this run; the rest of its output is left out\n"
@@ -235,7 +238,7 @@ class _Outputs:
             return False
         left = self._left[descriptor]
         if left >= 0:
-            _write(self.open[descriptor], part[:left])
+            _write(self.open[descriptor], CONTROLS.sub(b"?", part[:left]))
             self._left[descriptor] = max(-1, left - len(part))
             if len(part) > left:
                 _write(2, LEFT_OUT.encode())
