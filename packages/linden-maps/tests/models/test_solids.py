@@ -9,6 +9,7 @@ import pytest
 from fakes.solids import volume_m3
 from linden.geometry import rotation_matrix
 from linden.protocol.values.space import Rotation
+from linden.scenery.mesh import Material, Mesh
 from linden_maps.models.fittings import hoop
 from linden_maps.models.solids import (
     Look,
@@ -24,7 +25,6 @@ from linden_maps.models.solids import (
     turned,
     wedge,
 )
-from linden.scenery.mesh import Material, Mesh
 
 PLAIN = Look(Material.PLAIN, (1, 2, 3))
 

@@ -5,8 +5,8 @@ The box ends at the shoulder, as the sources of sizes measure it; so the neck is
 
 from linden.blueprints.library import Blueprint
 from linden.protocol.values.enums import SemanticTag
-from linden_maps.models.solids import Look, Shape, ball, both_sides, rod, tagged, tube
 from linden.scenery.mesh import Material, Mesh, join
+from linden_maps.models.solids import Look, Shape, ball, both_sides, rod, tagged, tube
 
 _COATS = {"deer": (134, 98, 66), "dog": (196, 160, 104)}
 _COAT = (120, 96, 72)

@@ -5,6 +5,7 @@ double glass door on either side.
 """
 
 from linden.blueprints.library import Blueprint
+from linden.scenery.mesh import Material, Mesh, join
 from linden_maps.models.fittings import (
     cockpit,
     front,
@@ -37,7 +38,6 @@ from linden_maps.models.solids import (
     moved,
     tagged,
 )
-from linden.scenery.mesh import Material, Mesh, join
 
 _BAR_M = 0.13
 """Height of the bar of lights on a roof."""

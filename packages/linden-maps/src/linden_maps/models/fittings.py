@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from linden.scenery.mesh import Material, Mesh, join
 from linden_maps.models.hull import F64, PROUD_M, Frame, Silhouette, half_width, ring_heights, top
 from linden_maps.models.solids import (
     BEACON_BLUE,
@@ -38,7 +39,6 @@ from linden_maps.models.solids import (
     tagged,
     turned,
 )
-from linden.scenery.mesh import Material, Mesh, join
 
 _SIDES = 15
 ABOUT_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])

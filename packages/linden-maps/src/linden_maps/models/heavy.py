@@ -1,6 +1,7 @@
 """Buses, trucks and ambulances: a cab or a whole hull, with what they carry behind it."""
 
 from linden.blueprints.library import Blueprint
+from linden.scenery.mesh import Material, Mesh, join
 from linden_maps.models.cars import frame_of, wheels
 from linden_maps.models.fittings import beacons, front, mirrors, pair, plaque, rear, underside
 from linden_maps.models.hull import PROUD_M, Frame, Silhouette, hull, ring_heights, silhouettes
@@ -22,7 +23,6 @@ from linden_maps.models.solids import (
     rod,
     tagged,
 )
-from linden.scenery.mesh import Material, Mesh, join
 
 _MIRRORS_M = 0.2
 """How far the mirrors of trucks and buses stand off their flanks."""

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden_maps.models.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
 from linden.scenery.mesh import Mesh
 from linden.structured import StructuredArray
+from linden_maps.models.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
 
 F64 = NDArray[np.float64]
 Span = tuple[float, float]

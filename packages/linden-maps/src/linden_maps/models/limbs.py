@@ -11,8 +11,8 @@ from typing import NamedTuple, TypeVar, cast
 import numpy as np
 
 from linden.protocol.values.enums import SemanticTag
-from linden_maps.models.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
 from linden.scenery.mesh import Material, Mesh, join
+from linden_maps.models.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
 
 Colour = tuple[int, int, int]
 Make = TypeVar("Make", bound=Callable[..., Mesh])

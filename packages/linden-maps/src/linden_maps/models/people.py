@@ -10,11 +10,11 @@ from linden.blueprints.library import Blueprint
 from linden.geometry import rotation_matrix
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import Rotation
+from linden.scenery.actors.posing import WALKER_FRAMES
+from linden.scenery.mesh import Mesh, join
 from linden_maps.models import limbs
 from linden_maps.models.limbs import Build, Colour
-from linden.scenery.actors.posing import WALKER_FRAMES
 from linden_maps.models.solids import Shape, moved, tagged, turned
-from linden.scenery.mesh import Mesh, join
 
 F64 = NDArray[np.float64]
 

@@ -6,9 +6,10 @@ from typing import NamedTuple
 from linden.blueprints.library import Blueprint
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import Vector3D
+from linden.scenery.actors.posing import FORK
+from linden.scenery.mesh import Mesh, join
 from linden_maps.models.fittings import hoop, spoked_wheel
 from linden_maps.models.people import figure, outfit
-from linden.scenery.actors.posing import FORK
 from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
@@ -32,7 +33,6 @@ from linden_maps.models.solids import (
     tube,
     wedge,
 )
-from linden.scenery.mesh import Mesh, join
 
 _RIDER_M = 1.66
 """The stature of a rider."""

@@ -2,6 +2,7 @@
 
 import math
 
+from linden.scenery.mesh import Material, Mesh
 from linden_maps.models.solids import (
     BLACK,
     RUBBER,
@@ -16,7 +17,6 @@ from linden_maps.models.solids import (
     tube,
     wedge,
 )
-from linden.scenery.mesh import Material, Mesh
 
 _LEAVES = Look(Material.LEAVES, (70, 112, 48))
 _WOOD = Look(Material.WOOD, (140, 100, 64))

@@ -7,10 +7,10 @@ import numpy as np
 from linden.blueprints.library import Blueprint
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import BoundingBox
-from linden_maps.models.solids import Shape, bounds, stretched, tagged
 from linden.scenery.mesh import Mesh, join
 from linden_maps.models.props import garden, plants, small, street
 from linden_maps.models.props import warning_signs as signs
+from linden_maps.models.solids import Shape, bounds, stretched, tagged
 
 Model = Callable[[float, float, float], list[Mesh]]
 

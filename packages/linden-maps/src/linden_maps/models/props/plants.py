@@ -2,8 +2,8 @@
 
 import math
 
-from linden_maps.models.solids import Look, ball, box, lathe, rod, stretched, tube
 from linden.scenery.mesh import Material, Mesh
+from linden_maps.models.solids import Look, ball, box, lathe, rod, stretched, tube
 
 _BARK = Look(Material.BARK, (92, 72, 54))
 _LEAVES = Look(Material.LEAVES, (70, 112, 48))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 
+from linden.scenery.mesh import Material, Mesh
 from linden_maps.models.fittings import ABOUT_Y, hoop
 from linden_maps.models.solids import (
     BLACK,
@@ -20,7 +21,6 @@ from linden_maps.models.solids import (
     turned,
     wedge,
 )
-from linden.scenery.mesh import Material, Mesh
 
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]

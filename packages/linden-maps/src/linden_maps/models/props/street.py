@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from linden.scenery.mesh import Material, Mesh
 from linden_maps.models.fittings import hoop
 from linden_maps.models.solids import (
     BLACK,
@@ -17,7 +18,6 @@ from linden_maps.models.solids import (
     tube,
     wedge,
 )
-from linden.scenery.mesh import Material, Mesh
 
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]

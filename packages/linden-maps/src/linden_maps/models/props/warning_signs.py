@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
+from linden.scenery.mesh import LampOf, Material, Mesh
 from linden_maps.models.fittings import hoop
 from linden_maps.models.solids import BLACK, RUBBER, STEEL, Look, ball, box, lathe, moved, prism, rod
-from linden.scenery.mesh import LampOf, Material, Mesh
 
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]
