@@ -125,5 +125,5 @@ def test_without_the_wheel_there_is_a_sentence(module: str, monkeypatch: pytest.
     for part in ("core", "idl", "builtin"):
         monkeypatch.setitem(sys.modules, f"cyclonedds.{part}", None)
     monkeypatch.delitem(sys.modules, f"basu_ros.{module}")
-    with pytest.raises(UserError, match=r'pip install "linden\[ros2\]"'):
+    with pytest.raises(UserError, match=r'pip install "basu-ros\[ros2\]"'):
         importlib.import_module(f"basu_ros.{module}")

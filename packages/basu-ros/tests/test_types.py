@@ -55,5 +55,5 @@ def test_arrays_of_fixed_length_are_full_of_zeros() -> None:
 def test_a_missing_rosbags_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rosbags", None)
     monkeypatch.delitem(sys.modules, "basu_ros")
-    with pytest.raises(UserError, match=r"pip install \"linden\[rosbag\]\""):
+    with pytest.raises(UserError, match="pip install basu-ros"):
         importlib.import_module("basu_ros")

@@ -124,7 +124,7 @@ def test_a_town_s_folder_is_made_once_and_a_failure_is_one_sentence(
 
 def test_without_sumo_the_extra_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "libsumo", None)
-    with pytest.raises(UserError, match=r"SUMO is not installed; install it with: pip install 'linden\[sumo\]'"):
+    with pytest.raises(UserError, match="SUMO is not installed; install it with: pip install basu-sumo"):
         in_process(folder / "small.sumocfg", step_s=STEP_S, seed=0)
 
 

@@ -101,7 +101,7 @@ def test_closing_the_window_quits(devices: Devices) -> None:
 
 def test_without_pygame_a_sentence_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pygame", None)
-    with pytest.raises(UserError, match=r"pip install 'linden\[hud\]'"):
+    with pytest.raises(UserError, match="pip install basu-window"):
         check_display()
 
 

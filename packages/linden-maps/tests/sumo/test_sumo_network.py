@@ -159,5 +159,5 @@ def test_a_map_that_netconvert_refuses_is_one_sentence(tmp_path: Path) -> None:
 def test_without_sumo_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("SUMO_HOME", raising=False)
     monkeypatch.setattr("importlib.util.find_spec", lambda _name: None)
-    with pytest.raises(UserError, match=r"SUMO is not installed; install it with: pip install 'linden\[sumo\]'"):
+    with pytest.raises(UserError, match=r"SUMO is not installed; install it with: pip install 'linden-maps\[sumo\]'"):
         programs.run("netconvert", (), tmp_path)
