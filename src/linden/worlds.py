@@ -311,7 +311,7 @@ class Worlds:
         return self._frames
 
     def on_device(self, name: str) -> "DeviceColumn":
-        """Return a column of ``state`` (W, S, ...) where it lies on the GPU, as ``torch.as_tensor`` and CuPy take it.
+        """Return a column of ``state`` (W, S, ...) where it lies on the GPU, as PyTorch and CuPy take it.
 
         The next call that changes actors or places makes it stale.
 
