@@ -28,6 +28,7 @@ LONGEST_SENTENCE = 25
 TREES: dict[str, tuple[str, ...]] = {
     "src/linden": ("src/linden/**/*.py",),
     "src/basu": ("src/basu/**/*.py",),
+    "src/basu_openscenario": ("src/basu_openscenario/**/*.py",),
     "docs": ("docs/**/*.md", "README.md", "CONTRIBUTING.md", "examples/**/*.md"),
     "tests": ("tests/**/*.py",),
 }
