@@ -10,10 +10,10 @@ import numpy as np
 from basu.agents.manual.inputs import Strike
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.observations import Neighbours
+from basu.managers.observations import Neighbours, vehicle_of
 from basu.output.hud.hud import Pace
 from basu.output.hud.notices import Judge, Notices
-from basu.records.history.model import FRAME, Facts, Vehicle
+from basu.records.history.model import FRAME, Facts
 from basu_window.frames import (
     Moment,
     actors_note,
@@ -80,7 +80,7 @@ class WatchManager(BaseManager):
             raise UserError(str(error)) from error
         self._say(f"window            {link.address}")
         self._neighbours = Neighbours(run.world, run.vehicle.id)
-        self._vehicle = _vehicle(run)
+        self._vehicle = vehicle_of(run.vehicle)
         name = run.carla_map.name.rpartition("/")[2]
         link.note({"type": "map", "name": name, "text": run.carla_map.to_opendrive()})
         self._tell_actors()
@@ -189,14 +189,3 @@ class WatchManager(BaseManager):
         actors = actors_note(facts, self._agent)
         actors += [other_actor(each, type_id, self._neighbours.sizes[each]) for each, type_id in met.items()]
         self._link.note({"type": "actors", "actors": actors})
-
-
-def _vehicle(run: Run) -> Vehicle:
-    """Return the box of the vehicle under test as records have it."""
-    box = run.vehicle.bounding_box
-    return Vehicle(
-        type_id=run.vehicle.type_id,
-        front_m=box.location.x + box.extent.x,
-        rear_m=box.extent.x - box.location.x,
-        width_m=2.0 * box.extent.y,
-    )

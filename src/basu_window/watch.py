@@ -96,17 +96,16 @@ def _send(link: PageLink, folders: list[Path], histories: list[History], text: s
     first = histories[0]
     link.note({"type": "map", "name": first.facts.route.town, "text": text})
     actors, marks, notices = list[dict[str, Any]](), list[dict[str, Any]](), list[str]()
-    for number, (folder, history) in enumerate(zip(folders, histories, strict=True)):
+    scorings = [resolve(Scoring, [scoring_of_run(folder / CONFIG_FILE)]) for folder in folders]
+    for number, (folder, history, scoring) in enumerate(zip(folders, histories, scorings, strict=True)):
         actors += actors_note(history.facts, f"run {number + 1}" if len(folders) > 1 else "", number)
-        scoring = resolve(Scoring, [scoring_of_run(folder / CONFIG_FILE)])
         marks += [mark_of(each, number) for each in infractions(history, scoring)]
         notice = lacks(folder)
         notices += [notice] if notice else []
     link.note({"type": "actors", "actors": actors})
     link.note(route_note(first.facts.route, drives=False))
-    scoring = resolve(Scoring, [scoring_of_run(folders[0] / CONFIG_FILE)])
     title = " beside ".join(folder.resolve().name for folder in folders)
-    facts = {"panels": panels_of(first, scoring, title), "marks": marks, "notice": " ".join(notices)}
+    facts = {"panels": panels_of(first, scorings[0], title), "marks": marks, "notice": " ".join(notices)}
     link.blob("frames.bin", record_frames(histories))
     link.blob("facts.json", packed(facts))
     link.note({"type": "record", "frames": "record/frames.bin", "facts": "record/facts.json"})

@@ -16,7 +16,7 @@ from linden.maps.ground import Ground
 from linden.maps.library import HOME_MAP, MapLibrary
 from linden.physics.bodies import FARTHEST_M, Bodies, place_rows
 from linden.physics.columns import BodyTable
-from linden.physics.contact.statics import Statics, scenery_type
+from linden.physics.contact.statics import Statics
 from linden.physics.state import BODY, VEHICLE, WALKER
 from linden.physics.step import CONTACT, Contacts, advance_worlds, contacts_of
 from linden.physics.vehicle.controls import set_controls
@@ -25,8 +25,7 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.sensors.casting.thread_pool import in_stretches
 from linden.simulation.below_ground import DEEP_M
-from linden.simulation.overlap import touching, world_centres
-from linden.simulation.spawning import NEEDS_ROOM, REACH_M, embody
+from linden.simulation.spawning import NEEDS_ROOM, bodies_at, embody, scenery_at
 from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
@@ -311,7 +310,7 @@ class Worlds:
         return self._frames
 
     def on_device(self, name: str) -> "DeviceColumn":
-        """Return a column of ``state`` (W, S, ...) where it lies on the GPU, as ``torch.as_tensor`` and CuPy take it.
+        """Return a column of ``state`` (W, S, ...) where it lies on the GPU, as PyTorch and CuPy take it.
 
         The next call that changes actors or places makes it stale.
 
@@ -455,14 +454,10 @@ class Worlds:
         statics = self._scenery.statics
         for number, pose in enumerate(poses):
             mine = chosen[pose_of_world == number]
-            near = statics.near(pose.location.x, pose.location.y, REACH_M)
-            met = touching(blueprint.box, pose, statics.centre, statics.half, statics.yaw_rad, near)
-            if len(met):
-                self._refuse_room(blueprint, pose, int(mine[0]), scenery_type(int(statics.tag[met[0]])))
-            state = self._table.state[mine].reshape(-1)
-            solid = np.flatnonzero(state["alive"] & state["collides"])
-            yaw_rad = state["rotation"][:, 1]
-            met = touching(blueprint.box, pose, world_centres(state), state["half_extent"], yaw_rad, solid)
+            scenery = scenery_at(statics, blueprint.box, pose)
+            if scenery is not None:
+                self._refuse_room(blueprint, pose, int(mine[0]), scenery)
+            met = bodies_at(self._table.state[mine].reshape(-1), blueprint.box, pose)
             if len(met):
                 world, slot = divmod(int(met[0]), self._table.state.shape[1])
                 self._refuse_room(blueprint, pose, int(mine[world]), f"the body in slot {slot}")

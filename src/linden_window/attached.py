@@ -16,7 +16,7 @@ log = logging.getLogger("linden")
 
 
 class AttachedWindow:
-    """The process of the pages and what the server sends to it."""
+    """Starts the process of the pages, sends it the frames of a server, and carries out the orders of pages."""
 
     def __init__(self, *, may_control: bool, port: int) -> None:
         """Start the process, which takes a second, while the server starts."""

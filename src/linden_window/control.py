@@ -34,24 +34,27 @@ def carry_out(order: dict[str, Any], context: "Context", clock: "FrameClock") ->
         return f"The page sent an order that cannot be read ({error!r}); load it again."
 
 
-def _pause(order: dict[str, Any], context: "Context", clock: "FrameClock") -> str:
+def _refuse_in_synchronous_mode(context: "Context", action: str) -> None:
+    """Raise Refusal where clients tick the world; ``action`` is what the page wants to do with the time."""
     if context.world.settings.synchronous_mode:
-        return "A client decides when time passes (synchronous mode), so the page can neither pause nor step."
+        raise Refusal(f"A client decides when time passes (synchronous mode), so the page {action}.")
+
+
+def _pause(order: dict[str, Any], context: "Context", clock: "FrameClock") -> str:
+    _refuse_in_synchronous_mode(context, "can neither pause nor step")
     clock.is_paused = bool(order["on"])
     return "The world is paused." if clock.is_paused else "The world goes on."
 
 
 def _step(_order: dict[str, Any], context: "Context", clock: "FrameClock") -> str:
-    if context.world.settings.synchronous_mode:
-        return "A client decides when time passes (synchronous mode), so the page can neither pause nor step."
+    _refuse_in_synchronous_mode(context, "can neither pause nor step")
     clock.is_paused = True
     clock.one_step()
     return ""
 
 
 def _speed(order: dict[str, Any], context: "Context", clock: "FrameClock") -> str:
-    if context.world.settings.synchronous_mode:
-        return "A client decides when time passes (synchronous mode), so the page cannot set the speed."
+    _refuse_in_synchronous_mode(context, "cannot set the speed")
     wanted = _number(order["value"])
     clock.speed = min(FASTEST, max(SLOWEST, wanted))
     return f"The world runs at {clock.speed:g} times real time."

@@ -5,15 +5,13 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from linden.authoring.gltf import Buffer
 from linden.blueprints.library import packaged
 from linden.blueprints.skeleton import FULL_SWING_MPS, skeleton
 from linden.maps.cache import MapCache
 from linden.scenery.actors.actor_meshes_cache import bodies_of
 from linden.scenery.actors.posing import VEHICLE_FRAMES, WALKER_BONES
-from linden_window.tiles import GZIP_LEVEL, document_of, surfaces
+from linden_window.tiles import GZIP_LEVEL, document_of, quantisation, surfaces
 
 if TYPE_CHECKING:
     from linden.scenery.actors.actor_meshes import Bodies, Part
@@ -52,8 +50,7 @@ class Models:
         for part in parts:
             mesh = self._bodies.meshes[part.mesh]
             corners = mesh.vertices_m[mesh.triangles]
-            low = corners.min(axis=(0, 1)).astype(np.float64)
-            scale = float((corners.max(axis=(0, 1)) - low).max()) / 65535.0 or 1.0
+            low, scale = quantisation(corners)
             primitives, used = surfaces(buffer, corners, mesh.faces, low, scale)
             for primitive in primitives:
                 primitive["material"] += len(looks)
@@ -63,8 +60,8 @@ class Models:
                 "colour": part.colour,
                 "low": low[[0, 2, 1]].tolist(),
                 "step": scale,
+                "hubs": hubs,
             }
-            extras["hubs"] = hubs
             nodes.append({"mesh": len(meshes), "extras": extras})
             meshes.append({"primitives": primitives})
         return document_of(buffer, nodes, meshes, looks)

@@ -5,7 +5,9 @@ address, so that no other site can reach the port through the browser.
 """
 
 import asyncio
+import base64
 import gzip
+import hashlib
 import hmac
 import json
 import logging
@@ -237,9 +239,6 @@ def _page_files() -> dict[str, bytes]:
 @once
 def _script_hash() -> str:
     """Return the hash of the one script inside of the page, for the browser's policy."""
-    import base64  # noqa: PLC0415 - once per process
-    import hashlib  # noqa: PLC0415 - once per process
-
     text = gzip.decompress(_page_files()["index.html"]).decode()
     script = text.split('<script type="importmap">', 1)[1].split("</script>", 1)[0]
     return f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}"

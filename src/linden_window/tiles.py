@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.authoring.gltf import ARRAY, ELEMENTS, FLOAT, UNSIGNED_INT, Buffer, file_of
-from linden.scenery.mesh import FACE, LampOf, Material, Mesh
+from linden.scenery.mesh import LampOf, Material, Mesh
 from linden.structured import StructuredArray
 
 TILE_M = 256.0
@@ -81,8 +81,7 @@ def tiles_of(mesh: Mesh) -> list[Tile]:
 def tile_file(corners_m: NDArray[np.float32], faces: StructuredArray, name: str) -> bytes:
     """Return the bytes of a .glb file of triangles (T, 3, 3) with their faces (T,)."""
     buffer = Buffer()
-    low = corners_m.min(axis=(0, 1)).astype(np.float64)
-    scale = float((corners_m.max(axis=(0, 1)) - low).max()) / _STEPS or 1.0
+    low, scale = quantisation(corners_m)
     primitives, looks = surfaces(buffer, corners_m, faces, low, scale)
     node = {
         "mesh": 0,
@@ -91,6 +90,12 @@ def tile_file(corners_m: NDArray[np.float32], faces: StructuredArray, name: str)
         "scale": [scale] * 3,
     }
     return document_of(buffer, [node], [{"primitives": primitives}], looks)
+
+
+def quantisation(corners_m: NDArray[np.float32]) -> tuple[NDArray[np.float64], float]:
+    """Return the lowest corner (3,) of triangles (T, 3, 3) and the size of a step that covers them, m."""
+    low = corners_m.min(axis=(0, 1)).astype(np.float64)
+    return low, float((corners_m.max(axis=(0, 1)) - low).max()) / _STEPS or 1.0
 
 
 def surfaces(
@@ -207,6 +212,3 @@ def _material(look: _Look) -> dict[str, Any]:
 def _place(corner: NDArray[np.floating[Any]]) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in corner)
     return x, y, z
-
-
-assert FACE.names is not None

@@ -1,6 +1,8 @@
 """`Window`: the hub, the page server and the scene of one window, in the process of the pages."""
 
 import asyncio
+import gzip
+import json
 import logging
 from collections.abc import Callable
 from typing import Any
@@ -93,9 +95,6 @@ class Window:
         place, _, rest = path.partition("/")
         if place == "model":
             if rest == "gait.json":
-                import gzip  # noqa: PLC0415 - once per page
-                import json  # noqa: PLC0415 - once per page
-
                 return gzip.compress(json.dumps(gait()).encode())
             return self._models.file(rest.removesuffix(".glb"), query.get("choice", ""))
         if place == "record":

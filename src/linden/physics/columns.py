@@ -171,7 +171,7 @@ class Columns:
     jump: Column[np.bool_] = Column()
 
     state: Rows
-    """(S,) of BODY."""
+    """Rows of this world, (S,) of BODY; another array after the table has grown."""
     spec_of: NDArray[np.int32]
 
     def __init__(self, table: BodyTable | None = None, world: int = 0) -> None:

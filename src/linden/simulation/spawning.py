@@ -9,12 +9,14 @@ mesh is Unreal's and not available here, so it is a cube of 1 m times its ``scal
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.blueprints.library import Blueprint, Kind
 from linden.errors import Refusal
 from linden.geometry import compose
 from linden.physics.bodies import Bodies
-from linden.physics.contact.statics import scenery_type
+from linden.physics.contact.statics import Statics, scenery_type
+from linden.physics.state import Rows
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import BoundingBox, Transform, Vector3D
@@ -57,7 +59,7 @@ def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
 NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
 
-REACH_M = 8.0
+_REACH_M = 8.0
 """No corner of a vehicle or walker lies further from its origin; the longest, a bus, has 5.5 m."""
 
 _OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
@@ -140,12 +142,22 @@ def _by_distance(episode: Episode, pose: Transform) -> list[Transform]:
 def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str | None:
     """Return the name of what stands where a box would be: a body first, then the scenery."""
     bodies, statics = episode.bodies, episode.statics
-    solid = np.flatnonzero(bodies.alive & bodies.collides)
-    found = touching(box, pose, world_centres(bodies.state), bodies.half_extent, bodies.rotation[:, 1], solid)
+    found = bodies_at(bodies.state, box, pose)
     if found.size:
         record = episode.actors.of_slot(int(found[0]))
         return f"{record.description.id} (actor {record.id})"
-    near = statics.near(pose.location.x, pose.location.y, REACH_M)
+    return scenery_at(statics, box, pose)
+
+
+def bodies_at(state: Rows, box: BoundingBox, pose: Transform) -> NDArray[np.intp]:
+    """Return the rows of BODY (N,) with solid bodies that a box at ``pose`` would touch, ascending."""
+    solid = np.flatnonzero(state["alive"] & state["collides"])
+    return touching(box, pose, world_centres(state), state["half_extent"], state["rotation"][:, 1], solid)
+
+
+def scenery_at(statics: Statics, box: BoundingBox, pose: Transform) -> str | None:
+    """Return the type of the first piece of scenery that a box at ``pose`` would touch; None if there is none."""
+    near = statics.near(pose.location.x, pose.location.y, _REACH_M)
     found = touching(box, pose, statics.centre, statics.half, statics.yaw_rad, near)
     return scenery_type(int(statics.tag[found[0]])) if found.size else None
 

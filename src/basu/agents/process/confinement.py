@@ -21,7 +21,7 @@ MEANINGS = {
     SIGHT: "it sees no other processes",
     SIGNALS: "it can signal and trace no other processes",
     FILES: "it writes in its own folder only",
-    PORTS: "it cannot connect to the simulator's own ports and to Traffic Managers",
+    PORTS: "it can use neither the simulator's own ports nor those of Traffic Managers",
 }
 """The parts of a confinement; which of them hold depends on the kernel and its settings."""
 

@@ -1,6 +1,7 @@
 """Claims about agents that attack with their process: each such drive is the agent's failure, and leaves nothing."""
 
 import contextlib
+import os
 import re
 import socket
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 from basu.agents.process import agent_process, confinement
 from basu.agents.process.endings import Ending, ended_how, ended_outside, memory_bytes
 from basu.agents.process.gate import closed_ports
+from basu.agents.process.keeper import _Outputs
 from basu.agents.process.remote_agent import AgentInProcess, RemoteAgent, find_agent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
 from basu.traffic_ports import TRAFFIC_PORTS, free_traffic_port
@@ -224,6 +226,17 @@ def test_output_is_bounded_in_each_run_and_steers_no_terminal(tmp_path: Path) ->
     assert 0 < len(done.stdout) <= 2 << 20
     assert done.stderr.count(b"the agent wrote more than 1 MB in this run") == 2
     assert done.stderr.count(b"?[2Jlast words") == 2
+
+
+def test_a_control_character_in_two_parts_steers_no_terminal() -> None:
+    agents_end, keepers_end = os.pipe()[::-1]
+    shown, written = os.pipe()
+    outputs = _Outputs([keepers_end, os.pipe()[0]])
+    outputs.open[keepers_end] = written
+    for part in (b"caf\xc3", b"\xa9 \xc2", b"\x9b2J \xc2", b"\xb5m"):
+        os.write(agents_end, part)
+        assert outputs.pass_on(keepers_end)
+    assert os.read(shown, 100) == "café ?2J µm".encode()
 
 
 def test_the_confinement_that_holds_is_known_and_said(tmp_path: Path) -> None:
