@@ -11,7 +11,6 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 # root has no sandbox; the rest keeps the browser from asking anybody for anything
 SWITCHES = [
     "--no-sandbox",
-    "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -21,8 +20,8 @@ SWITCHES = [
 
 
 @contextmanager
-def running_browser() -> Iterator[Browser]:
-    """A Chromium without a window."""
+def running_browser(*switches: str) -> Iterator[Browser]:
+    """A Chromium without a window; ``switches`` replace the one that turns WebGL off."""
     found = next((path for path in map(shutil.which, NAMES) if path), None)
     if found is None:
         pytest.fail(
@@ -30,7 +29,7 @@ def running_browser() -> Iterator[Browser]:
             "otherwise: apt-get install chromium"
         )
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=SWITCHES)
+        browser = playwright.chromium.launch(executable_path=found, args=[*SWITCHES, *(switches or ("--disable-gpu",))])
         try:
             yield browser
         finally:

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from linden.protocol.values.enums import SemanticTag
+from linden.scenery.gltf import glb
 from linden.scenery.mesh import Material, Mesh, join
 from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
-from linden_maps.gltf import glb
 
 FRAMES = Frames(np.array([[1000.0, -2000.0, 250.0]]), np.array([0.4]))
 SIZES = {5126: np.float32, 5125: np.uint32, 5123: np.uint16}

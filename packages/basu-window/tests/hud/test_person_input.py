@@ -48,7 +48,7 @@ def test_under_an_agent_a_session_begins_with_the_agent() -> None:
 
 
 def test_recording_needs_an_actor_one_that_does_something() -> None:
-    with pytest.raises(UserError, match="there is no window; add --hud"):
+    with pytest.raises(UserError, match="there is no window; add --watch or --hud"):
         person_for(RunOptions(record_keys=Path("keys.json")), by_hand=False)
 
 

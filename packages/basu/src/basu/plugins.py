@@ -25,7 +25,13 @@ OUTPUTS = "basu.outputs"  # a `basu.running.outputs.Output`: shows or writes a d
 PARTS = "basu.parts"  # the parts of the benchmark that this project's plugins bring; each caller knows its own
 
 DISTRIBUTIONS = {
-    COMMANDS: {"metrics": "basu-carla-log", "replay": "basu-carla-log", "ros": "basu-ros", "sumo": "basu-sumo"},
+    COMMANDS: {
+        "metrics": "basu-carla-log",
+        "replay": "basu-carla-log",
+        "ros": "basu-ros",
+        "sumo": "basu-sumo",
+        "watch": "basu-window",
+    },
     AGENTS: dict.fromkeys(("autoware", "autoware-ai", "ros", "ros1"), "basu-ros"),
     AGENT_FILES: {"leaderboard": "basu-leaderboard"},
     OUTPUTS: {"window": "basu-window", "viewer": "basu-window", "ros": "basu-ros"},

@@ -114,16 +114,9 @@ class World:
         self.frame += 1
         self.delta_s = dt_s
         self.recorder.before_step(self.episode)
-        step(self.episode, dt_s, self._substeps(dt_s))
+        step(self.episode, dt_s, substeps_of(self.settings, dt_s))
         self.replayer.after_step(self, dt_s)
         self.recorder.after_step(self.episode, dt_s)
-
-    def _substeps(self, dt_s: float) -> int:
-        """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""
-        if not self.settings.substepping:
-            return 1
-        wanted = math.ceil(dt_s / self.settings.max_substep_delta_time - 1e-9)
-        return max(1, min(wanted, self.settings.max_substeps))
 
     def spawn(self, description: ActorDescription, pose: Transform, *, parent_id: int = 0) -> ActorRecord:
         """Put an actor into the world; ``pose`` is relative where there is a parent.
@@ -162,13 +155,26 @@ class World:
         return measure(self.sensors, self.episode, listened, SensorFrame(self.sensor_scene, self.frame, self.delta_s))
 
 
+def substeps_of(settings: EpisodeSettings, dt_s: float) -> int:
+    """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""
+    if not settings.substepping:
+        return 1
+    wanted = math.ceil(dt_s / settings.max_substep_delta_time - 1e-9)
+    return max(1, min(wanted, settings.max_substeps))
+
+
+def clock_s(time_s: float) -> float:
+    """Return a duration in whole ticks of the simulated clock."""
+    return round(time_s * _CLOCK_HZ) / _CLOCK_HZ
+
+
 def step(episode: Episode, dt_s: float, substeps: int) -> None:
     """Advance an episode by ``dt_s``; the physics takes ``substeps`` equal parts."""
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
     episode.friction.update(episode)
     episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
-    episode.elapsed_s += round(dt_s * _CLOCK_HZ) / _CLOCK_HZ
+    episode.elapsed_s += clock_s(dt_s)
     for actor_id in episode.walkers.step(episode, dt_s):
         destroy(episode, actor_id, announce=True)
     episode.surroundings.step(episode.elapsed_s)

@@ -83,7 +83,7 @@ def test_brakes_slow_by_their_torque_while_the_wheels_turn() -> None:
 def test_a_wheel_that_has_locked_stays_locked_until_the_brake_is_released() -> None:
     for lags in (True, False):  # CARLA's wheels; those that the road turns again when it is stronger than the brake
         bodies, car = launched(10.0, VehicleControl(manual_gear_shift=True, brake=0.2))
-        bodies.specs[car]["tyres_lag"] = lags
+        bodies.spec(car)["tyres_lag"] = lags
         bodies.state["wheel_omega"][car] = 0.0
         run(bodies, 0.1)
         assert (bodies.wheel_omega[car] == 0.0).all() == lags
@@ -97,7 +97,7 @@ def test_light_wheels_that_lag_are_locked_by_a_brake_that_alone_could_not() -> N
     slowest = []
     for lags in (True, False):
         bodies, car = launched(8.0, NEUTRAL)
-        bodies.specs[car]["tyres_lag"] = lags
+        bodies.spec(car)["tyres_lag"] = lags
         bodies.set_control(car, VehicleControl(manual_gear_shift=True, brake=1.0))
         slowing = []
         while speed_mps(bodies, car) > 1.0:
@@ -367,4 +367,4 @@ def test_the_wheels_positions_are_kept_in_the_world_in_centimetres() -> None:
     bodies.set_physics_control(car, echoed._replace(mass=2000.0))
     assert bodies.mass_kg[car] == 2000.0
     again = bodies.add_vehicle(echoed, at(x=10.0, y=20.0, yaw=90.0), BOX)
-    assert bodies.specs[again]["wheel_x_m"] == pytest.approx([offset.x for offset in OFFSETS])
+    assert bodies.spec(again)["wheel_x_m"] == pytest.approx([offset.x for offset in OFFSETS])

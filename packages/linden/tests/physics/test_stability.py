@@ -64,7 +64,7 @@ def energy_j(bodies: Bodies, slot: int) -> float:
     x, y = s["centre_of_mass"][:2]
     arm = math.cos(yaw) * x - math.sin(yaw) * y, math.sin(yaw) * x + math.cos(yaw) * y
     velocity = s["velocity"][0] - turn * arm[1], s["velocity"][1] + turn * arm[0]
-    spin = 0.5 * float((bodies.specs[slot]["wheel_inertia_kgm2"] * s["wheel_omega"] ** 2).sum())
+    spin = 0.5 * float((bodies.spec(slot)["wheel_inertia_kgm2"] * s["wheel_omega"] ** 2).sum())
     return 0.5 * float(s["mass_kg"] * (velocity[0] ** 2 + velocity[1] ** 2) + s["yaw_inertia_kgm2"] * turn**2) + spin
 
 

@@ -59,11 +59,11 @@ def test_all_four_are_answered_as_they_were_set_with_the_places_of_their_axles()
     bodies.set_physics_control(slot, of_four()._replace(wheels=changed))
     seen = bodies.physics_control(slot)
     assert [wheel.tire_friction for wheel in seen.wheels] == [1.0, 2.0, 3.0, 4.0]
-    assert bodies.specs["friction"][slot, :2] == pytest.approx([1.5, 3.5])
+    assert bodies.spec(slot)["friction"][:2] == pytest.approx([1.5, 3.5])
     assert [wheel.position for wheel in seen.wheels[:2]] == [pytest.approx((300.0, 70.0, 30.0))] * 2
     assert [wheel.position for wheel in seen.wheels[2:]] == [pytest.approx((300.0, -70.0, 30.0))] * 2
     bodies.set_physics_control(slot, seen)
-    assert bodies.specs["wheel_x_m"][slot, :2] == pytest.approx([0.7, -0.7])
+    assert bodies.spec(slot)["wheel_x_m"][:2] == pytest.approx([0.7, -0.7])
 
 
 def test_a_two_wheeler_cannot_be_given_another_number_of_wheels() -> None:

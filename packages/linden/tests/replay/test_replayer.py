@@ -400,7 +400,7 @@ def test_no_number_of_a_file_reaches_the_physics_unheld(world_map: LoadedMap, tm
             assert np.isfinite(column).all()
         for field in ("location", "rotation", "velocity"):
             assert np.isfinite(simulation.episode.actors.rows[field]).all()
-    assert bodies.gear.max() <= bodies.specs["gear_count"].max()
+    assert bodies.gear.max() <= bodies.table.specs["gear_count"].max()
 
 
 @pytest.mark.parametrize("elapsed_s", [float("nan"), -1.0])

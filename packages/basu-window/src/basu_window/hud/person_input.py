@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.base_manager import BaseManager
+from basu_window.browser.live import WatchManager
+from basu_window.browser.page_input import PageInput
 from basu_window.hud.hud import Hud
 from basu_window.manual.devices import Devices, check_display
 from basu_window.manual.inputs import Person
@@ -33,8 +35,10 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
     for path in (options.record_keys, options.hud_screenshot):
         if path is not None and not path.resolve().parent.is_dir():
             raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
-    devices = None
-    if _has_window(options, by_hand=by_hand):
+    devices: InputSource | None = None
+    if options.watch:
+        devices = PageInput()
+    elif _has_window(options, by_hand=by_hand):
         check_display()
         devices = Devices()
     source: InputSource
@@ -43,7 +47,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
     elif devices is not None:
         source = devices
     elif options.record_keys is not None:
-        raise UserError("--record-keys records what a person does, and there is no window; add --hud")
+        raise UserError("--record-keys records what a person does, and there is no window; add --watch or --hud")
     else:
         return None
     return Person(
@@ -51,6 +55,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
         drives_first=by_hand,
         taken_by_any_input=by_hand,
         live=options.keys is None,
+        devices=devices,
     )
 
 
@@ -62,7 +67,9 @@ def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseMan
     found: list[BaseManager] = []
     if options.keys is not None or options.record_keys is not None:
         found.append(KeysManager(person.source, options.record_keys))
-    if _has_window(options, by_hand=person.drives_first):
+    if isinstance(person.devices, PageInput):
+        found.append(WatchManager(live, person, person.devices, agent, print))
+    elif _has_window(options, by_hand=person.drives_first):
         found.append(Hud(live, person, options, agent))
     return found
 

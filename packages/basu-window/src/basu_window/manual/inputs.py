@@ -115,8 +115,17 @@ class Person:
     pedal takes over, too.
     """
 
-    def __init__(self, source: InputSource, *, drives_first: bool, taken_by_any_input: bool, live: bool) -> None:
+    def __init__(
+        self,
+        source: InputSource,
+        *,
+        drives_first: bool,
+        taken_by_any_input: bool,
+        live: bool,
+        devices: InputSource | None = None,
+    ) -> None:
         self.source = source
+        self.devices = devices  # of the window; None without one
         self._taken_by_any_input = taken_by_any_input
         self._hands = PedalsAndWheel()
         self._reverse = False

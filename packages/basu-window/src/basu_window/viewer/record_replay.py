@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -60,7 +59,7 @@ def show_run(
     for tick, row in enumerate(history.frames):
         shower.tick(float(row["t_s"]), _pose(row), _driving(row), others.get(tick, ()))
         if tick % every == 0:
-            so_far.advance(partial(_window, history, tick + 1))
+            so_far.advance(partial(history.window, end=tick + 1))
             shower.scores(so_far.scores)
             shower.infractions(so_far.infractions)
         on_tick(1)
@@ -68,18 +67,6 @@ def show_run(
     shower.infractions(infractions(history, scoring))
     close_stream(stream)
     return stream.said
-
-
-def _window(history: History, end: int, first: int) -> History:
-    """Return the frames from ``first`` until before ``end`` and the contacts in them; ticks count from ``first``."""
-    contacts = (contact for contact in history.collisions if first <= contact.tick < end)
-    return replace(
-        history,
-        frames=history.frames[first:end],
-        others=history.others[:0],
-        collisions=tuple(replace(contact, tick=contact.tick - first) for contact in contacts),
-        lane_invasions=(),
-    )
 
 
 def _pose(row: np.void) -> Pose:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.managers.base_manager import BaseManager, ego_in
-from basu.managers.observations import Neighbours
-from basu.records.history import Vehicle
+from basu.managers.observations import Neighbours, vehicle_of
 from basu_window.viewer import entities
 from basu_window.viewer.entities import EVERY_S, log_map, log_route, log_vehicle, show
 from basu_window.viewer.layout import Parts, Pose
@@ -50,7 +49,7 @@ class ViewerManager(BaseManager):
         self._shown_at_s: dict[str, float] = {}
         log_map(recording, run.carla_map)
         log_route(recording, run.route)
-        log_vehicle(recording, _vehicle(run))
+        log_vehicle(recording, vehicle_of(run.vehicle))
 
     def tick(self, frame: Frame) -> None:
         """Show a tick."""
@@ -105,14 +104,3 @@ class ViewerManager(BaseManager):
         """Show the scores so far, and what is held against the driver."""
         self._shower.scores(self._live.metrics.scores_so_far())
         self._shower.infractions(self._live.metrics.infractions_so_far())
-
-
-def _vehicle(run: Run) -> Vehicle:
-    """Return the box of the vehicle under test as records have it."""
-    box = run.vehicle.bounding_box
-    return Vehicle(
-        type_id=run.vehicle.type_id,
-        front_m=box.location.x + box.extent.x,
-        rear_m=box.extent.x - box.location.x,
-        width_m=2.0 * box.extent.y,
-    )

@@ -9,9 +9,9 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
-from basu.managers.observations import Neighbours, RouteLights
+from basu.managers.observations import Neighbours, RouteLights, vehicle_of
 from basu.metrics.incremental import SoFar
-from basu.records.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
+from basu.records.history import Collision, Facts, LaneInvasion, Recorder
 from basu.records.history.model import NO_LIGHT
 
 if TYPE_CHECKING:
@@ -56,13 +56,7 @@ class MetricsManager(BaseManager):
         """Attach the benchmark's own sensors."""
         self._run = run
         self._neighbours = run.neighbours or Neighbours(run.world, run.vehicle.id)
-        box = run.vehicle.bounding_box
-        self._vehicle = Vehicle(
-            type_id=run.vehicle.type_id,
-            front_m=box.location.x + box.extent.x,
-            rear_m=box.extent.x - box.location.x,
-            width_m=2.0 * box.extent.y,
-        )
+        self._vehicle = vehicle_of(run.vehicle)
         self._lights = RouteLights(run.world, run.route, self._vehicle.rear_m)
         library = run.world.get_blueprint_library()
         heard: dict[str, Callable[[Any], None]] = {"sensor.other.collision": self._hear_collision}

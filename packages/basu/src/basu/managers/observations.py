@@ -7,13 +7,24 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
-from basu.records.history.model import NEAR_M, NEAREST, NO_LIGHT
+from basu.records.history.model import NEAR_M, NEAREST, NO_LIGHT, Vehicle
 from basu.records.placed_motion import PlacedMotion, own_motion
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Ego, Frame
     from basu.routing import Route
+
+
+def vehicle_of(actor: carla.Vehicle) -> Vehicle:
+    """Return the box of the vehicle under test as records have it."""
+    box = actor.bounding_box
+    return Vehicle(
+        type_id=actor.type_id,
+        front_m=box.location.x + box.extent.x,
+        rear_m=box.extent.x - box.location.x,
+        width_m=2.0 * box.extent.y,
+    )
 
 
 class LaneUnder(NamedTuple):

@@ -32,7 +32,7 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
         UserError: the plugin is not installed, no window can be opened, or no such session exists.
     """
     flags = {"--hud": options.hud, "--keys": options.keys, "--record-keys": options.record_keys}
-    given = [flag for flag, value in flags.items() if value is not None]
+    given = ["--watch"] * options.watch + [flag for flag, value in flags.items() if value is not None]
     if not (given or by_hand):
         return None
     made: Person | None = plugins.load(plugins.PARTS, "person", given[0] if given else "a person at the wheel")(

@@ -47,7 +47,7 @@ class DriveOptions(WindowOptions, RecordOptions, SimulatorOptions, SumoOptions, 
     @property
     def needs_one_simulator(self) -> bool:
         """Whether drives cannot be driven at the same time: they share a simulator, a window, keys or topics."""
-        live = self.viewer or self.ros2 or self.ros1
+        live = self.viewer or self.watch or self.ros2 or self.ros1
         return (
             live
             or self.host is not None

@@ -26,6 +26,15 @@ class WindowOptions(Settings):
         bool,
         Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
     ] = False
+    watch: Annotated[
+        bool,
+        Option(
+            help="show the drive in a page of the browser and print its address; P takes over control",
+            group=WINDOW,
+            repeats=False,
+            rival="window",
+        ),
+    ] = False
     hud: Annotated[
         Literal["camera", "map"] | None,
         Option(
@@ -34,6 +43,7 @@ class WindowOptions(Settings):
             bare="camera",
             advice="an agent is named before --hud, as in `basu run basic --hud`",
             repeats=False,
+            rival="window",
         ),
     ] = None
     hud_size: Annotated[

@@ -40,7 +40,8 @@ def _wanted(options: DriveOptions, *, has_person: bool) -> dict[str, str]:
     """Return the outputs of this project that a drive needs, each with what needs it."""
     ros = {"--ros2": options.ros2, "--ros1": options.ros1, "--rosbag": options.rosbag is not None}
     keys = {"--hud": options.hud, "--keys": options.keys, "--record-keys": options.record_keys}
-    found = {"window": next((flag for flag, value in keys.items() if value is not None), None)}
+    watched = "--watch" if options.watch else None
+    found = {"window": watched or next((flag for flag, value in keys.items() if value is not None), None)}
     if has_person:
         found["window"] = "a person at the wheel"
     found["viewer"] = "--viewer" if options.viewer else None

@@ -1,6 +1,7 @@
 """Claims about agents that attack with their process: each such drive is the agent's failure, and leaves nothing."""
 
 import contextlib
+import os
 import re
 import socket
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 from basu.agents.process import agent_process, confinement
 from basu.agents.process.endings import Ending, ended_how, ended_outside, memory_bytes
 from basu.agents.process.gate import closed_ports
+from basu.agents.process.keeper import _Outputs
 from basu.agents.process.remote_agent import AgentInProcess, RemoteAgent, find_agent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
 from basu.traffic_ports import TRAFFIC_PORTS, free_traffic_port
@@ -226,6 +228,17 @@ def test_output_is_bounded_in_each_run_and_steers_no_terminal(tmp_path: Path) ->
     assert done.stderr.count(b"?[2Jlast words") == 2
 
 
+def test_a_control_character_in_two_parts_steers_no_terminal() -> None:
+    agents_end, keepers_end = os.pipe()[::-1]
+    shown, written = os.pipe()
+    outputs = _Outputs([keepers_end, os.pipe()[0]])
+    outputs.open[keepers_end] = written
+    for part in (b"caf\xc3", b"\xa9 \xc2", b"\x9b2J \xc2", b"\xb5m"):
+        os.write(agents_end, part)
+        assert outputs.pass_on(keepers_end)
+    assert os.read(shown, 100) == "café ?2J µm".encode()
+
+
 def test_the_confinement_that_holds_is_known_and_said(tmp_path: Path) -> None:
     agent = found(tmp_path, "pass")
     parts = agent.process().confinement
@@ -274,6 +287,22 @@ def test_an_agent_that_scans_for_the_simulator_finds_the_gate_alone(tmp_path: Pa
             RemoteAgent(agent, 10.0, 0).own_route()
         assert confinement.PORTS in agent.confinement
         assert confinement.PORTS not in found(tmp_path, "pass").confinement
+
+
+@NEEDS_PORTS
+def test_an_agent_cannot_take_a_closed_port_for_itself(tmp_path: Path) -> None:
+    """An agent that held every port of a range left none to the benchmark, which then blamed the set-up."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    deed = (
+        "s = socket.socket(); "
+        f"s.bind(('127.0.0.1', 0)); t = socket.socket(); t.bind(('127.0.0.1', {port})); raise ValueError('took it')"
+    )
+    with pytest.raises(AgentCrashedError, match="Permission denied"):
+        RemoteAgent(found(tmp_path, deed, closed_ports=(port,)), 10.0, 0).own_route()
+    with pytest.raises(AgentCrashedError, match="took it"):
+        RemoteAgent(found(tmp_path, deed), 10.0, 0).own_route()
 
 
 def test_ports_are_closed_for_a_simulator_that_is_not_ours() -> None:

@@ -3,11 +3,11 @@
 import argparse
 
 from linden.maps.opendrive.parse import parse
+from linden.scenery.gltf import glb
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
 from linden_maps.cli.map_source import world_map_of
 from linden_maps.cli.output import say
-from linden_maps.gltf import glb
 from linden_maps.output import write_output
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from linden_maps.gltf import ARRAY, ELEMENTS, FLOAT, UNSIGNED_INT, Buffer, file_of, material_of
+from linden.scenery.gltf import ARRAY, ELEMENTS, FLOAT, UNSIGNED_INT, Buffer, file_of, material_of
 from linden_maps.unreal.parts import Part, Surface
 
 _AXES, _SIGNS = [0, 2, 1], (1.0, 1.0, -1.0)  # of ours that are x, y, z of the file: east, up, south

@@ -2,15 +2,18 @@
 
 import argparse
 import gc
+import importlib
 import logging
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from linden.cli.compiling import FirstStart
 from linden.cli.process import Ending, allow_connections, background_work_ended, give_up_stdout, write_log
+from linden.errors import UserError
 
 DEFAULT_PORT = 2000
 log = logging.getLogger("linden")
@@ -52,6 +55,19 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
         action="store_true",
         help="open and close gates for agents by lines on stdin, and accept other connections from the parent only",
     )
+    serve.add_argument(
+        "--window",
+        action="store_true",
+        help="print an address of a page that shows the world in a browser on this machine (needs the extra window)",
+    )
+    serve.add_argument(
+        "--window-control",
+        action="store_true",
+        help="let the page of --window pause, step, spawn actors and change the weather; implies --window",
+    )
+    serve.add_argument(
+        "--window-port", type=int, default=0, metavar="PORT", help="port of the page (default: the system chooses)"
+    )
     serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
     serve.set_defaults(command=run)
 
@@ -66,13 +82,17 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     allow_connections()
     first_start = FirstStart(_say)
+    window = None
     with background_work_ended(), Ending() as ending:
         try:
+            window = _window_of(arguments)
             with _collector_paused():
                 # here, not above: it brings in the compiler, which other commands of this program do not need
                 from linden.cli.server_start import make_server  # noqa: PLC0415 - see above
 
                 started = make_server(arguments, first_start)
+                if window is not None:
+                    _say(f"linden: window {window.attach(started.server)}")
                 _say(f"linden: ready, rpc port {started.rpc_port}, streaming port {started.streaming_port}")
             if arguments.gates:
                 started.server.accept_only(os.getppid())
@@ -81,7 +101,26 @@ def run(arguments: argparse.Namespace) -> int:
             started.server.run()
         finally:
             first_start.end()
+            if window is not None:
+                window.close()
     return 0
+
+
+def _window_of(arguments: argparse.Namespace) -> Any:  # noqa: ANN401 - of another distribution
+    """Start the process of the window's pages, if the user wants a window; None otherwise.
+
+    Raises:
+        UserError: the package of the window is not installed.
+    """
+    if not (arguments.window or arguments.window_control):
+        return None
+    try:
+        module = importlib.import_module("linden_window.attached")
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"--window needs the package {error.name}, which comes with: pip install linden-window"
+        ) from None
+    return module.AttachedWindow(may_control=arguments.window_control, port=arguments.window_port)
 
 
 @contextmanager

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from linden.geometry import rotation_matrix
-from linden.physics.columns import finite, twice
-from linden.physics.state import BODY, PROP, VEHICLE, WALKER
+from linden.physics.columns import finite
+from linden.physics.state import BODY, PROP, VEHICLE, WALKER, Rows
 from linden.physics.vehicle.api import VehicleApi
 from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
 from linden.protocol.values.control import (
@@ -20,7 +20,8 @@ from linden.protocol.values.control import (
 )
 from linden.protocol.values.space import BoundingBox, Transform, Vector3D
 
-_FARTHEST_M = 1e7
+FARTHEST_M = 1e7
+"""No body gets further from the origin along any axis."""
 _MOST_PUSH = 1e9  # N·s, N, N·m·s or N·m
 
 
@@ -37,8 +38,8 @@ class Bodies(VehicleApi):
         free = np.flatnonzero(~self.alive[: self.count])
         slot = int(free[0]) if len(free) else self.count
         if slot == len(self.alive):
-            self.state, self.specs = twice(self.state), twice(self.specs)
-        self.count = max(self.count, slot + 1)
+            self.table.grow()
+        self.table.counts[self.world] = max(self.count, slot + 1)
         self.state[slot] = np.zeros((), BODY)
         s = self.state
         s["alive"][slot] = s["simulate"][slot] = s["gravity"][slot] = s["collides"][slot] = True
@@ -73,8 +74,7 @@ class Bodies(VehicleApi):
             count = len(control.wheels)
             wheel_offsets_m = local_wheels(control, pose, count) or default_wheel_offsets(box, count)
         slot = self._add(VEHICLE, pose, box, control.mass)
-        self._undercarriage[slot] = undercarriage
-        self._fit(slot, control, wheel_offsets_m)
+        self._fit(slot, control, wheel_offsets_m, undercarriage)
         return slot
 
     def add_walker(self, pose: Transform, box: BoundingBox, mass_kg: float) -> int:
@@ -92,17 +92,16 @@ class Bodies(VehicleApi):
 
     def remove(self, slot: int) -> None:
         """Free a slot; its number is given out again."""
-        self.state[slot] = np.zeros((), BODY)
-        self._forget_vehicle(slot)
-        while self.count and not self.alive[self.count - 1]:
-            self.count -= 1
+        self.state[slot], self.spec_of[slot] = np.zeros((), BODY), 0
+        alive = np.flatnonzero(self.alive[: self.count])
+        self.table.counts[self.world] = alive[-1] + 1 if len(alive) else 0
 
     # -- place and motion ----------------------------------------------------------------------------------------------
 
     def set_pose(self, slot: int, pose: Transform) -> None:
         """Put the actor there; it keeps its velocity (as CARLA does) and finds its footing anew."""
         s = self.state
-        s["position"][slot] = [finite(x, -_FARTHEST_M, _FARTHEST_M) for x in pose.location]
+        s["position"][slot] = [finite(x, -FARTHEST_M, FARTHEST_M) for x in pose.location]
         s["rotation"][slot] = [
             math.radians(math.remainder(angle, 360.0)) if math.isfinite(angle) else 0.0 for angle in pose.rotation
         ]
@@ -115,16 +114,7 @@ class Bodies(VehicleApi):
 
     def set_poses(self, slots: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
         """Put many actors somewhere as ``set_pose`` does: (K,) slots, each once; (K, 6) m, then degrees."""
-        s = self.state
-        s["position"][slots] = np.clip(np.nan_to_num(poses[:, :3]), -_FARTHEST_M, _FARTHEST_M)
-        turn_deg = np.fmod(np.where(np.isfinite(poses[:, 3:]), poses[:, 3:], 0.0), 360.0)
-        s["rotation"][slots] = np.radians(turn_deg - 360.0 * (turn_deg > 180.0) + 360.0 * (turn_deg < -180.0))
-        s["footing"][slots] = 0.0
-        s["velocity"][slots, 2] -= s["heave_mps"][slots]
-        s["heave_mps"][slots] = 0.0
-        s["tilt_radps"][slots] = 0.0
-        s["tumbling"][slots] = False
-        s["resting"][slots] = False
+        place_rows(self.state, slots, poses)
 
     def set_simulate(self, slot: int, *, simulate: bool) -> None:
         """Switch the physics of one body; without it the body stays where it is put, and others collide with it.
@@ -201,7 +191,7 @@ class Bodies(VehicleApi):
         vector = np.array([finite(v, -_MOST_PUSH, _MOST_PUSH) for v in push])
         linear[slot] += vector
         if at_m is not None:
-            arm = np.array([finite(v, -_FARTHEST_M, _FARTHEST_M) for v in at_m]) - self._mass_point(slot)
+            arm = np.array([finite(v, -FARTHEST_M, FARTHEST_M) for v in at_m]) - self._mass_point(slot)
             angular[slot] += np.cross(arm, vector)
 
     def _mass_point(self, slot: int) -> NDArray[np.float64]:
@@ -245,3 +235,16 @@ class Bodies(VehicleApi):
         """Return what the walker was told last."""
         direction = Vector3D(*map(float, self.walker_direction[slot]))
         return WalkerControl(direction, float(self.walker_speed[slot]), bool(self.jump[slot]))
+
+
+def place_rows(s: Rows, rows: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
+    """Put the bodies of ``rows`` (K,) of ``s``, each once, at ``poses`` (K, 6): m, then degrees."""
+    s["position"][rows] = np.clip(np.nan_to_num(poses[:, :3]), -FARTHEST_M, FARTHEST_M)
+    turn_deg = np.fmod(np.where(np.isfinite(poses[:, 3:]), poses[:, 3:], 0.0), 360.0)
+    s["rotation"][rows] = np.radians(turn_deg - 360.0 * (turn_deg > 180.0) + 360.0 * (turn_deg < -180.0))
+    s["footing"][rows] = 0.0
+    s["velocity"][rows, 2] -= s["heave_mps"][rows]
+    s["heave_mps"][rows] = 0.0
+    s["tilt_radps"][rows] = 0.0
+    s["tumbling"][rows] = False
+    s["resting"][rows] = False

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import kept_part, part
-from linden.physics.state import SOURCES, VEHICLE, Body
+from linden.physics.state import SOURCES, VEHICLE, Body, Work
 from linden.physics.tumble import push_tumbling, start_tumbling, tripping_speed_mps
 
 F64 = NDArray[np.float64]
@@ -32,12 +32,12 @@ def _turn(v: Body, yaw_radps: float, roll_push: float, pitch_push: float) -> Non
 
 
 @part
-def _push(v: Body, push: F64, spin: F64, share: float) -> None:
+def _push(v: Body, w: Work, push: F64, spin: F64, share: float) -> None:
     """Apply a push and a turn (3,), whole or for ``share`` seconds; wakes a body at rest."""
     if push[0] == 0.0 and push[1] == 0.0 and push[2] == 0.0 and spin[0] == 0.0 and spin[1] == 0.0 and spin[2] == 0.0:
         return
     if v.tumbling:
-        push_tumbling(v, push, spin, share)
+        push_tumbling(v, w, push, spin, share)
         return
     for axis in range(3):
         v.velocity[axis] += share * push[axis] / v.mass_kg
@@ -79,15 +79,15 @@ def _trips(v: Body) -> bool:
 
 
 @kept_part(SOURCES)
-def apply_impulses(v: Body) -> None:
+def apply_impulses(v: Body, w: Work) -> None:
     """Apply what was given once: N·s and N·m·s."""
-    _push(v, v.impulse, v.angular_impulse, 1.0)
+    _push(v, w, v.impulse, v.angular_impulse, 1.0)
 
 
 @kept_part(SOURCES)
-def apply_forces(v: Body, dt_s: float) -> None:
+def apply_forces(v: Body, w: Work, dt_s: float) -> None:
     """Apply for one substep what acts throughout the frame: N and N·m."""
-    _push(v, v.force, v.torque, dt_s)
+    _push(v, w, v.force, v.torque, dt_s)
 
 
 @part

@@ -32,6 +32,8 @@ NO_BODY, VEHICLE, WALKER, PROP = range(4)
 """Values of the column ``kind``."""
 
 WHEELS = 4
+TUMBLING_POINTS = 16
+"""Points of a body off its wheels that can meet the ground, see ``tumble``."""
 CURVE_POINTS = 32
 GEARS = 16
 
@@ -196,7 +198,26 @@ VEHICLE_WORK = np.dtype(
         ("speeds", "f8", 3),  # the motion: m/s forward, m/s to the right, rad/s
         ("pull", "f8", 3),  # outer forces: N, N, N·m; gravity's part along the slope included
         ("ground_m", "f8", WHEELS),  # height under each wheel
+        # of a body off its wheels
+        ("axes", "f8", (3, 3)),  # its axes as columns, in the world
+        ("arm", "f8", 3),  # of the centre of mass from the origin, m
+        ("weight", "f8", (3, 3)),  # inverse of the inertia, in the world
+        ("turn_ease", "f8", 3),  # and about its own axes, over the mass
+        ("turn", "f8", 3),  # spin, rad/s
+        ("speed", "f8", 3),  # of the centre of mass, m/s
+        ("local", "f8", 3),  # a point in the body's frame, m
+        ("at", "f8", 3),  # and from the centre of mass, in the world
+        ("points", "f8", (TUMBLING_POINTS, 9)),  # arm, normal, allowed approach, friction along and across
+        ("given_ns", "f8", (TUMBLING_POINTS, 3)),  # impulses on each: normal, along, across
+        ("along", "f8", 3),  # a direction
+        ("lever", "f8", 3),
+        ("middle", "f8", 3),  # the centre of mass, m
+        # of a contact: the boxes of the two, see ``contact.boxes``
+        ("box", "f8", 8),
+        ("other_box", "f8", 8),
     ],
     align=True,
 )
-"""What is worked out for the vehicle at hand: scratch. A record, since numba counts references to arrays, not to it."""
+"""What is worked out for the body at hand: scratch. A record, since numba counts references to arrays, not to it.
+
+On a GPU a kernel can allocate no arrays."""

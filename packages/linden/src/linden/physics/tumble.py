@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from linden.compiled import kept_part, part
 from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import body_axes, within_turn
-from linden.physics.state import SOURCES, Body, Spec
+from linden.physics.state import SOURCES, TUMBLING_POINTS, Body, Spec, Work
 
 F64 = NDArray[np.float64]
 
 BODY_FRICTION = 0.5  # a car on its side or roof on asphalt: 0.4 to 0.6, Brach, Vehicle Accident Analysis, chapter 4
 ROLLING_FRICTION = 0.02  # of a wheel along its own direction, unless a brake holds it
-_POINTS = 16
 _ROUNDS = 12
 _SLOP_M = 0.01  # depth that is left, so that lying contacts stay contacts
 _PUSHED_OUT = 0.2  # of the rest, per step
@@ -78,22 +77,21 @@ def start_tumbling(v: Body) -> None:
 
 
 @kept_part(SOURCES)
-def tumble(v: Body, spec: Spec, ground: Ground, gravity_mps2: float, dt_s: float) -> None:
+def tumble(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: float, dt_s: float) -> None:
     """Advance a tumbling vehicle by one substep."""
     if v.resting and _is_still(v, 0.0):
         return
     v.resting = False
-    axes, arm, weight = np.empty((3, 3)), np.empty(3), np.empty((3, 3))
-    _write_axes(v, axes, arm, weight)
-    turn, speed = np.empty(3), np.empty(3)
+    axes, arm = w.axes, w.arm
+    _write_axes(v, w)
+    turn, speed = w.turn, w.speed
     for axis in range(3):
         turn[axis] = v.angular_velocity[axis]
     _to_mass_point(v, arm, turn, speed)
     speed[2] -= gravity_mps2 * dt_s if v.gravity else 0.0
-    points = np.empty((_POINTS, 9))  # arm from the centre of mass, normal, allowed approach, friction along and across
-    met = _meet_ground(v, spec, ground, axes, arm, points, dt_s)
-    _press(v, axes, weight, points, met, speed, turn)
-    _move(v, axes, arm, speed, turn, dt_s)
+    met = _meet_ground(v, spec, w, ground, dt_s)
+    _press(v, w, met)
+    _move(v, w, dt_s)
     v.still_s = v.still_s + dt_s if met > 2 and _is_still(v, _STILL) else 0.0
     if v.still_s >= _STILL_FOR_S:
         for axis in range(3):
@@ -113,14 +111,14 @@ def _is_still(v: Body, most: float) -> bool:
 
 
 @part
-def _write_axes(v: Body, axes: F64, arm: F64, weight: F64) -> None:
+def _write_axes(v: Body, w: Work) -> None:
     """Write the axes as columns, the centre of mass from the origin (m), and the inverse of the inertia, in the world.
 
     The inertia is that of a uniform box.
     """
     nose, side, up = body_axes(v.rotation[0], v.rotation[1], v.rotation[2])
     x, y, z = v.half_extent[0], v.half_extent[1], v.half_extent[2]
-    ease = np.empty(3)
+    axes, arm, weight, ease = w.axes, w.arm, w.weight, w.turn_ease
     ease[0], ease[1], ease[2] = 3.0 / (y * y + z * z), 3.0 / (x * x + z * z), 3.0 / (x * x + y * y)
     for row in range(3):
         axes[row, 0], axes[row, 1], axes[row, 2] = nose[row], side[row], up[row]
@@ -158,13 +156,13 @@ def _local_point(v: Body, spec: Spec, k: int, point: F64) -> None:
 
 
 @part
-def _meet_ground(v: Body, spec: Spec, ground: Ground, axes: F64, arm: F64, points: F64, dt_s: float) -> int:
+def _meet_ground(v: Body, spec: Spec, w: Work, ground: Ground, dt_s: float) -> int:
     """Write the points that touch the ground or may within the step, and return how many they are."""
     met = 0
-    local, at = np.empty(3), np.empty(3)
+    axes, arm, points, local, at = w.axes, w.arm, w.points, w.local, w.at
     braked = v.brake > 0.5 or v.hand_brake
     tyre = (spec.friction[0] if v.friction_here < 0.0 else v.friction_here) * v.road_friction
-    for k in range(_POINTS):
+    for k in range(TUMBLING_POINTS):
         _local_point(v, spec, k, local)
         for row in range(3):
             at[row] = -arm[row]
@@ -198,24 +196,26 @@ def _speed(v: Body) -> float:
 
 
 @part
-def _press(v: Body, axes: F64, weight: F64, points: F64, met: int, speed: F64, turn: F64) -> None:
+def _press(v: Body, w: Work, met: int) -> None:
     """Change speed and spin by the impulses of all contacts: normal ones press only, friction stays in their share."""
-    given = np.zeros((_POINTS, 3))
-    along = np.empty(3)
+    axes, points, given, along = w.axes, w.points, w.given_ns, w.along
+    for k in range(met):
+        for column in range(3):
+            given[k, column] = 0.0
     for _ in range(_ROUNDS):
         for k in range(met):
             entry = points[k]
             for row in range(3):
                 along[row] = entry[3 + row]
-            wanted = _impulse(v, weight, entry, along, speed, turn, entry[6])
+            wanted = _impulse(v, w, entry, entry[6])
             pressed = max(0.0, given[k, 0] + wanted)
-            _apply(v, weight, entry, along, pressed - given[k, 0], speed, turn)
+            _apply(v, w, entry, pressed - given[k, 0])
             given[k, 0] = pressed
             for side in range(2):
                 _write_tangent(axes, entry, side, along)
                 most = entry[7 + side] * pressed
-                held = max(-most, min(most, given[k, 1 + side] + _impulse(v, weight, entry, along, speed, turn, 0.0)))
-                _apply(v, weight, entry, along, held - given[k, 1 + side], speed, turn)
+                held = max(-most, min(most, given[k, 1 + side] + _impulse(v, w, entry, 0.0)))
+                _apply(v, w, entry, held - given[k, 1 + side])
                 given[k, 1 + side] = held
 
 
@@ -235,9 +235,9 @@ def _write_tangent(axes: F64, entry: F64, side: int, along: F64) -> None:
 
 
 @part
-def _impulse(v: Body, weight: F64, entry: F64, along: F64, speed: F64, turn: F64, wanted_mps: float) -> float:
+def _impulse(v: Body, w: Work, entry: F64, wanted_mps: float) -> float:
     """Return the impulse (N·s) along a direction that gives the contact point the wanted speed along it."""
-    lever = np.empty(3)
+    weight, along, lever, speed, turn = w.weight, w.along, w.lever, w.speed, w.turn
     lever[0] = entry[1] * along[2] - entry[2] * along[1]
     lever[1] = entry[2] * along[0] - entry[0] * along[2]
     lever[2] = entry[0] * along[1] - entry[1] * along[0]
@@ -250,9 +250,9 @@ def _impulse(v: Body, weight: F64, entry: F64, along: F64, speed: F64, turn: F64
 
 
 @part
-def _apply(v: Body, weight: F64, entry: F64, along: F64, impulse: float, speed: F64, turn: F64) -> None:
+def _apply(v: Body, w: Work, entry: F64, impulse: float) -> None:
     """Apply an impulse (N·s) along a direction at a contact point."""
-    lever = np.empty(3)
+    weight, along, lever, speed, turn = w.weight, w.along, w.lever, w.speed, w.turn
     lever[0] = entry[1] * along[2] - entry[2] * along[1]
     lever[1] = entry[2] * along[0] - entry[0] * along[2]
     lever[2] = entry[0] * along[1] - entry[1] * along[0]
@@ -263,8 +263,9 @@ def _apply(v: Body, weight: F64, entry: F64, along: F64, impulse: float, speed: 
 
 
 @part
-def _move(v: Body, axes: F64, arm: F64, speed: F64, turn: F64, dt_s: float) -> None:
+def _move(v: Body, w: Work, dt_s: float) -> None:
     """Move the centre of mass, turn the axes about it (Rodrigues' formula), and write the body's pose and motion."""
+    axes, arm, speed, turn, middle = w.axes, w.arm, w.speed, w.turn, w.middle
     rate = math.sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])
     if rate > 1e-12:
         x, y, z = turn[0] / rate, turn[1] / rate, turn[2] / rate
@@ -275,7 +276,6 @@ def _move(v: Body, axes: F64, arm: F64, speed: F64, turn: F64, dt_s: float) -> N
             axes[0, k] = cosine * a + sine * (y * c - z * b) + shared * x
             axes[1, k] = cosine * b + sine * (z * a - x * c) + shared * y
             axes[2, k] = cosine * c + sine * (x * b - y * a) + shared * z
-    middle = np.empty(3)
     for row in range(3):
         middle[row] = v.position[row] + arm[row] + speed[row] * dt_s
     for row in range(3):
@@ -328,12 +328,12 @@ def _find_feet(v: Body) -> None:
 
 
 @part
-def push_tumbling(v: Body, push: F64, spin: F64, share: float) -> None:
+def push_tumbling(v: Body, w: Work, push: F64, spin: F64, share: float) -> None:
     """Apply a push (N·s, or N for ``share`` seconds) at the centre of mass and a turn (N·m·s, or N·m) in space."""
-    axes, arm, weight = np.empty((3, 3)), np.empty(3), np.empty((3, 3))
-    _write_axes(v, axes, arm, weight)
-    gained = np.zeros(3)
+    arm, weight, gained = w.arm, w.weight, w.turn
+    _write_axes(v, w)
     for row in range(3):
+        gained[row] = 0.0
         for column in range(3):
             gained[row] += share * weight[row, column] * spin[column]
     for axis in range(3):

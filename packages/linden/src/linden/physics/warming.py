@@ -12,10 +12,12 @@ import numpy as np
 from linden.compiled import COMPILER_IS_OFF
 from linden.maps.ground import Ground, surface_under
 from linden.physics.bodies import Bodies
-from linden.physics.contact.impulses import part_bodies
+from linden.physics.columns import empty_rows
+from linden.physics.contact.impulses import ACCOUNT, part_bodies
 from linden.physics.contact.pairs import find_pairs
 from linden.physics.contact.statics import Statics
 from linden.physics.pushes import apply_forces, apply_impulses
+from linden.physics.state import VEHICLE_WORK
 from linden.physics.step import advance, heed_driver
 from linden.physics.tumble import tumble
 from linden.physics.vehicle.motion import advance_vehicle
@@ -38,21 +40,21 @@ def compile_driving() -> None:
     real, whole = numba.float64, numba.int64
     _compile(advance_vehicle, row, spec, work, _type_of(Ground.flat()), real, real, whole)
     _compile(heed_driver, row, spec, real)
-    _compile(apply_impulses, row)
-    _compile(apply_forces, row, real)
+    _compile(apply_impulses, row, work)
+    _compile(apply_forces, row, work, real)
 
 
 def compile_contacts() -> None:
     """Compile what finds and parts bodies that overlap, and what moves a vehicle off its wheels."""
-    row, spec, _, rows = _types()
+    row, spec, work, rows = _types()
     real, whole = numba.float64, numba.int64
     statics, pairs, account = (_type_of(each) for each in (Statics.none(), _PAIRS, _ACCOUNT))
     _compile(find_pairs, rows, whole, statics, real)
-    _compile(part_bodies, rows, pairs, statics, account)
-    _compile(tumble, row, spec, _type_of(Ground.flat()), real, real)
+    _compile(part_bodies, rows, pairs, statics, work, account)
+    _compile(tumble, row, spec, work, _type_of(Ground.flat()), real, real)
 
 
-_PAIRS, _ACCOUNT = np.empty((0, 2), np.int32), np.empty((0, 7))
+_PAIRS, _ACCOUNT = np.empty((0, 2), np.int32), np.empty((0, ACCOUNT))
 
 
 def _type_of(value: object) -> Any:  # noqa: ANN401 - a type of numba's
@@ -62,7 +64,7 @@ def _type_of(value: object) -> Any:  # noqa: ANN401 - a type of numba's
 def _types() -> tuple[Any, Any, Any, Any]:
     """Return numba's types of a body, of its constants, of the scratch, and of the array of bodies."""
     bodies = Bodies()
-    columns = [_type_of(column) for column in (bodies.state, bodies.specs, bodies.work)]
+    columns = [_type_of(column) for column in (bodies.state, bodies.table.specs, empty_rows(1, VEHICLE_WORK))]
     return (*(column.dtype for column in columns), columns[0])
 
 

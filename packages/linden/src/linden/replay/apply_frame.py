@@ -80,7 +80,7 @@ class FrameApplier:
         for pedal, column in (("throttle", bodies.throttle), ("steer", bodies.steer), ("brake", bodies.brake)):
             column[slots] = within(driven[pedal], 1.0)
         bodies.hand_brake[slots] = driven["hand_brake"] != 0
-        bodies.gear[slots] = bodies.gear_command[slots] = np.clip(driven["gear"], -1, bodies.specs["gear_count"][slots])
+        bodies.gear[slots] = bodies.gear_command[slots] = np.clip(driven["gear"], -1, bodies.spec(slots)["gear_count"])
         bodies.reverse[slots], bodies.manual_gear_shift[slots] = driven["gear"] < 0, False
 
     def _turn_wheels(self, wheels: Sequence[WheelTurns]) -> None:
@@ -88,7 +88,7 @@ class FrameApplier:
         found = self._players("wheels", np.array([one.id for one in wheels], np.uint32), Kind.VEHICLE)
         bodies = self._simulation.episode.bodies
         for row, slot in zip(found.rows.tolist(), found.slots.tolist(), strict=True):
-            count = int(bodies.specs["wheel_count"][slot])
+            count = int(bodies.spec(slot)["wheel_count"])
             for wheel in wheels[row].wheels:
                 if wheel["wheel"] < count:
                     bodies.point_wheel(slot, int(wheel["wheel"]), float(within(wheel["steer_deg"], 360.0)))

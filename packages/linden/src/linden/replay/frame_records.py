@@ -121,7 +121,7 @@ def wheels(episode: Episode, records: Sequence[ActorRecord]) -> list[WheelTurns]
     for record in records:
         if record.slot == NO_BODY:
             continue
-        count = int(bodies.specs["wheel_count"][record.slot])
+        count = int(bodies.spec(record.slot)["wheel_count"])
         turns = np.empty(count, layouts.WHEEL)
         turns["wheel"] = np.arange(count)
         turns["steer_deg"] = steer_deg[record.slot, :count]

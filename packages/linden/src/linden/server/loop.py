@@ -6,6 +6,7 @@ There is no lock, because nothing happens at the same time: between two events t
 import contextlib
 import gc
 import logging
+import math
 import os
 import select
 import selectors
@@ -123,6 +124,26 @@ class Server:
 
         self._selector.register(file, _READ, order)
 
+    def show(self, file: int, after_frame: Callable[[], None], read: Callable[["FrameClock"], bool]) -> None:
+        """Call ``after_frame`` after each frame, and ``read`` with the clock whenever ``file`` can be read.
+
+        ``read`` returns False when nothing more will come; then neither is called again.
+        """
+        self.context.after_frame = after_frame
+
+        def turn(_events: int) -> None:
+            try:
+                goes_on = read(self._pace)
+            except Exception as error:  # noqa: BLE001 - a bug of a window must not end the sessions of clients
+                self.context.log_bug("internal error in the window; the server goes on without it.", error)
+                goes_on = False
+            self._calls.publish()
+            if not goes_on:
+                self._selector.unregister(file)
+                self.context.after_frame = None
+
+        self._selector.register(file, _READ, turn)
+
     def accept_only(self, process: int) -> None:
         """Accept connections that pass no gate from one process only."""
         self._acceptor.owner = process
@@ -184,7 +205,7 @@ class Server:
         settings = self.context.world.settings
         if not settings.synchronous_mode:
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
-            waits.append(pace_s or order.traffic_wait_s(now_s))
+            waits.append(None if pace_s == math.inf else pace_s or order.traffic_wait_s(now_s))
         wait_s = min((wait_s for wait_s in waits if wait_s is not None), default=None)
         return None if wait_s is None else max(0.0, wait_s)
 

@@ -155,7 +155,7 @@ def sockets_of(episode: EpisodeState, actor_id: int) -> Bones:
 def _wheels(episode: EpisodeState, slot: int) -> list[F64]:
     """Return the frame of each wheel's hub in the vehicle's."""
     bodies = episode.bodies
-    spec = bodies.specs[slot]
+    spec = bodies.spec(slot)
     hubs = []
     for wheel in range(int(spec["wheel_count"])):
         place = Vector3D(*(float(spec[name][wheel]) for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")))
@@ -198,7 +198,7 @@ def component(episode: EpisodeState, actor_id: int, name: str) -> F64:
 def _has_blinkers(episode: EpisodeState, record: ActorRecord) -> bool:
     """Whether this is a vehicle with four wheels; CARLA's bicycles have no lamps, and its motorcycles other ones."""
     has_body = record.kind is Kind.VEHICLE and record.slot != NO_BODY
-    return has_body and int(episode.bodies.specs[record.slot]["wheel_count"]) == len(_WHEELS[4])
+    return has_body and int(episode.bodies.spec(record.slot)["wheel_count"]) == len(_WHEELS[4])
 
 
 def _blinker_frame(record: ActorRecord, forward: float, right: float) -> F64:

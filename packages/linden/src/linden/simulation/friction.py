@@ -89,7 +89,7 @@ class RoadFriction:
     def _apply_triggers(self, episode: EpisodeState) -> None:
         bodies = episode.bodies
         slots = np.flatnonzero(bodies.alive & (bodies.kind == VEHICLE))
-        centres, yaw_rad = world_centres(bodies), bodies.rotation[:, 1]
+        centres, yaw_rad = world_centres(bodies.state), bodies.rotation[:, 1]
         inside: dict[int, tuple[int, int]] = {}
         for trigger_id, made in self._triggers.items():
             pose = episode.transform(trigger_id)

@@ -5,17 +5,17 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.bodies import Bodies
+from linden.physics.state import Rows
 from linden.protocol.values.space import BoundingBox, Transform
 
 F64 = NDArray[np.float64]
 
 
-def world_centres(bodies: Bodies) -> F64:
-    """Return the middles of all boxes in the world (N, 3), m; what little they lean is left out."""
-    cosine, sine = np.cos(bodies.rotation[:, 1]), np.sin(bodies.rotation[:, 1])
-    x, y, z = bodies.box_centre.T
-    centres: F64 = bodies.position + np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
+def world_centres(state: Rows) -> F64:
+    """Return the middles of all boxes of BODY (N,) in the world (N, 3), m; what little they lean is left out."""
+    cosine, sine = np.cos(state["rotation"][:, 1]), np.sin(state["rotation"][:, 1])
+    x, y, z = state["box_centre"].T
+    centres: F64 = state["position"] + np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
     return centres
 
 

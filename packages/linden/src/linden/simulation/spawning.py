@@ -9,11 +9,14 @@ mesh is Unreal's and not available here, so it is a cube of 1 m times its ``scal
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.blueprints.library import Blueprint, Kind
 from linden.errors import Refusal
 from linden.geometry import compose
-from linden.physics.contact.statics import scenery_type
+from linden.physics.bodies import Bodies
+from linden.physics.contact.statics import Statics, scenery_type
+from linden.physics.state import Rows
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import BoundingBox, Transform, Vector3D
@@ -53,7 +56,7 @@ def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
     return Solid(BoundingBox(centre, half), weight_kg, mass_kg > 0.0)
 
 
-_NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
+NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
 
 _REACH_M = 8.0
@@ -77,7 +80,7 @@ def spawn(
     box = made_trigger.box if made_trigger else blueprint.box
     if blueprint.kind is Kind.PROP:
         box = solid(blueprint, description).box
-    if blueprint.kind in _NEEDS_ROOM:
+    if blueprint.kind in NEEDS_ROOM:
         _refuse_without_room(episode, blueprint, world_pose)
     record = ActorRecord(
         id=episode.actors.next_id(),
@@ -86,7 +89,7 @@ def spawn(
         box=box,
         semantic_tags=blueprint.semantic_tags,
         parent_id=parent_id,
-        slot=NO_BODY if parent_id else _embody(episode, blueprint, description, world_pose),
+        slot=NO_BODY if parent_id else embody(episode.bodies, blueprint, description, world_pose),
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
     if record.slot != NO_BODY:
@@ -96,8 +99,8 @@ def spawn(
     return record
 
 
-def _embody(episode: Episode, blueprint: Blueprint, description: ActorDescription, pose: Transform) -> int:
-    bodies = episode.bodies
+def embody(bodies: Bodies, blueprint: Blueprint, description: ActorDescription, pose: Transform) -> int:
+    """Add the body of a checked description and return its slot, ``NO_BODY`` where the actor occupies no space."""
     if blueprint.vehicle is not None:
         model = blueprint.vehicle
         slot = bodies.add_vehicle(model.physics, pose, blueprint.box, model.wheel_offsets_m, model.undercarriage)
@@ -139,11 +142,21 @@ def _by_distance(episode: Episode, pose: Transform) -> list[Transform]:
 def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str | None:
     """Return the name of what stands where a box would be: a body first, then the scenery."""
     bodies, statics = episode.bodies, episode.statics
-    solid = np.flatnonzero(bodies.alive & bodies.collides)
-    found = touching(box, pose, world_centres(bodies), bodies.half_extent, bodies.rotation[:, 1], solid)
+    found = bodies_at(bodies.state, box, pose)
     if found.size:
         record = episode.actors.of_slot(int(found[0]))
         return f"{record.description.id} (actor {record.id})"
+    return scenery_at(statics, box, pose)
+
+
+def bodies_at(state: Rows, box: BoundingBox, pose: Transform) -> NDArray[np.intp]:
+    """Return the rows of BODY (N,) with solid bodies that a box at ``pose`` would touch, ascending."""
+    solid = np.flatnonzero(state["alive"] & state["collides"])
+    return touching(box, pose, world_centres(state), state["half_extent"], state["rotation"][:, 1], solid)
+
+
+def scenery_at(statics: Statics, box: BoundingBox, pose: Transform) -> str | None:
+    """Return the type of the first piece of scenery that a box at ``pose`` would touch; None if there is none."""
     near = statics.near(pose.location.x, pose.location.y, _REACH_M)
     found = touching(box, pose, statics.centre, statics.half, statics.yaw_rad, near)
     return scenery_type(int(statics.tag[found[0]])) if found.size else None

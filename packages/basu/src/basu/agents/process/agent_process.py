@@ -76,7 +76,8 @@ class AgentProcess:
     ) -> None:
         """Start the process; no call is sent yet.
 
-        ``writable`` are folders in which it may write beside its own; ``closed_ports`` it may not connect to.
+        ``writable`` are folders in which it may write beside its own. It may neither connect to ``closed_ports`` nor
+        listen there.
         """
         ours, theirs = socket.socketpair()
         self._control, kept = socket.socketpair()

@@ -21,14 +21,14 @@ MEANINGS = {
     SIGHT: "it sees no other processes",
     SIGNALS: "it can signal and trace no other processes",
     FILES: "it writes in its own folder only",
-    PORTS: "it cannot connect to the simulator's own ports and to Traffic Managers",
+    PORTS: "it can use neither the simulator's own ports nor those of Traffic Managers",
 }
 """The parts of a confinement; which of them hold depends on the kernel and its settings."""
 
 CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446  # system calls, the same on all of Linux's architectures
 ABI_VERSION = 1  # flag of CREATE_RULESET
 PATH_BENEATH, NET_PORT = 1, 2  # LANDLOCK_RULE_PATH_BENEATH, LANDLOCK_RULE_NET_PORT
-CONNECT_TCP = 2  # LANDLOCK_ACCESS_NET_CONNECT_TCP
+USE_TCP = 1 | 2  # LANDLOCK_ACCESS_NET_BIND_TCP, LANDLOCK_ACCESS_NET_CONNECT_TCP
 PORT_NUMBERS = 1 << 16
 SIGNAL_SCOPE = 2  # LANDLOCK_SCOPE_SIGNAL
 ABI_WITH_REFER, ABI_WITH_TRUNCATE, ABI_WITH_PORTS, ABI_WITH_SCOPES = 2, 3, 4, 6
@@ -80,8 +80,8 @@ def confine(
     """Confine this thread, and all threads and processes that it starts; the parts that hold.
 
     Call it before the process has other threads. ``writable`` are the folders below which it may write;
-    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. It may not connect to
-    ``closed_ports`` of TCP, at any address.
+    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. It may neither
+    connect to ``closed_ports`` of TCP nor listen there, at any address.
     """
     abi = landlock_abi()
     if abi == 0:
@@ -91,9 +91,7 @@ def confine(
     everything |= TRUNCATE if abi >= ABI_WITH_TRUNCATE else 0
     has_scopes = abi >= ABI_WITH_SCOPES
     has_ports = bool(closed_ports) and abi >= ABI_WITH_PORTS
-    rules = _Ruleset(
-        files=everything, network=CONNECT_TCP if has_ports else 0, scoped=SIGNAL_SCOPE if has_scopes else 0
-    )
+    rules = _Ruleset(files=everything, network=USE_TCP if has_ports else 0, scoped=SIGNAL_SCOPE if has_scopes else 0)
     libc = ctypes.CDLL(None)
     size = (3 if has_scopes else 2 if has_ports else 1) * ctypes.sizeof(ctypes.c_uint64)
     ruleset = int(libc.syscall(CREATE_RULESET, ctypes.byref(rules), size, 0))
@@ -129,9 +127,9 @@ def _allow(libc: ctypes.CDLL, ruleset: int, folder: str, access: int) -> None:
 
 
 def _close_ports(libc: ctypes.CDLL, ruleset: int, closed: Sequence[int]) -> None:
-    """Allow connections to all ports but the closed ones: Landlock has rules that allow, and none that forbid."""
+    """Allow the use of all ports but the closed ones: Landlock has rules that allow, and none that forbid."""
     add, kept = libc.syscall, frozenset(closed)
-    rule = _Port(network=CONNECT_TCP)
+    rule = _Port(network=USE_TCP)
     at = ctypes.byref(rule)
     for port in range(PORT_NUMBERS):
         if port not in kept:

@@ -23,7 +23,7 @@ PORTS = 3  # of a simulator: calls, streams, and its secondary server
 
 
 def closed_ports(host: str | None, port: int, *, is_open: bool) -> tuple[int, ...]:
-    """Return the ports to which the agent's process may not connect.
+    """Return the ports that the agent's process may neither connect to nor listen at.
 
     They are those of a simulator at ``host`` and those of the benchmark's Traffic Managers. A server of our own accepts
     its owner's connections only. With ``--open`` none are closed.

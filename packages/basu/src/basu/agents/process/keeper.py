@@ -35,6 +35,8 @@ OUTPUT_BYTES = 1 << 20
 CHUNK_BYTES = 1 << 16
 CONTROLS = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xc2[\x80-\x9f]")
 """Control characters, with which an agent could write over what the benchmark prints; lines and tabs are none."""
+HALF_CONTROL = b"\xc2"
+"""The first byte of a control character of two; the second may come in another part."""
 END_LIMIT_S = 2.0  # for killed processes to be gone
 LEFT_OUT = (
     f"\nbasu: the agent wrote more than {OUTPUT_BYTES >> 20} MB in this run; the rest of its output is left out\n"
@@ -206,6 +208,7 @@ class _Outputs:
     def __init__(self, descriptors: list[int]) -> None:
         self.open = dict(zip(descriptors, (1, 2), strict=True))
         self._left = dict.fromkeys(descriptors, OUTPUT_BYTES)
+        self._held = dict.fromkeys(descriptors, b"")  # half a character, until the other half has come
         self._has_begun = False
         for descriptor in descriptors:
             os.set_blocking(descriptor, False)
@@ -238,7 +241,9 @@ class _Outputs:
             return False
         left = self._left[descriptor]
         if left >= 0:
-            _write(self.open[descriptor], CONTROLS.sub(b"?", part[:left]))
+            text = self._held[descriptor] + part[:left]
+            self._held[descriptor] = text[-1:] if text.endswith(HALF_CONTROL) else b""
+            _write(self.open[descriptor], CONTROLS.sub(b"?", text.removesuffix(self._held[descriptor])))
             self._left[descriptor] = max(-1, left - len(part))
             if len(part) > left:
                 _write(2, LEFT_OUT.encode())

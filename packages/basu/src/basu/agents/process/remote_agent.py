@@ -55,7 +55,7 @@ class AgentInProcess(NamedTuple):
     agent_config: str | None
     memory: Memory | None
     writes: tuple[str, ...] = ()  # folders in which its process may write beside its own
-    closed_ports: tuple[int, ...] = ()  # to which its process may not connect
+    closed_ports: tuple[int, ...] = ()  # its process may neither connect to them nor listen there
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
@@ -89,7 +89,7 @@ def find_agent(
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
     ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own;
-    ``closed_ports`` are those of a simulator, to which it may not connect.
+    it may neither connect to ``closed_ports`` nor listen there.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.

@@ -6,7 +6,7 @@ runs of one seed leave the same bytes whatever the server's own frame counter sa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -157,6 +157,17 @@ class History:
         from basu.records.history.tables import to_pandas  # noqa: PLC0415 - likewise
 
         return to_pandas(self, what)
+
+    def window(self, first: int, end: int) -> History:
+        """Return the frames from ``first`` until before ``end`` with their contacts; ticks count from ``first``."""
+        contacts = (contact for contact in self.collisions if first <= contact.tick < end)
+        return replace(
+            self,
+            frames=self.frames[first:end],
+            others=self.others[:0],
+            collisions=tuple(replace(contact, tick=contact.tick - first) for contact in contacts),
+            lane_invasions=(),
+        )
 
     def speed_mps(self) -> NDArray[np.float64]:
         """(T,) speed over ground."""

@@ -15,7 +15,7 @@ from linden.physics.axes import body_axes
 from linden.physics.contact.boxes import COS, HALF_X, HALF_Y, HIGH, LOW, SIN, X, Y, overlap
 from linden.physics.contact.pairs import box_centre, is_fixed
 from linden.physics.contact.statics import Statics
-from linden.physics.state import SOURCES, VEHICLE, Body, Rows
+from linden.physics.state import SOURCES, VEHICLE, Body, Rows, Work
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -28,17 +28,21 @@ _ROUNDS = 4
 _SLOP_M = 0.005  # overlap that is left, so that resting contacts stay contacts
 _PUSHED_OUT = 0.4  # of the rest, per step
 
-JX, JY, JZ, PX, PY, PZ, TOUCHED = range(7)
-"""Columns of the account kept per pair: impulse on the first body (N·s), last contact point (m), whether they met."""
+JX, JY, JZ, PX, PY, PZ, TOUCHED, DEPTH, NX, NY, ACCOUNT = range(11)
+"""Columns of the account kept per pair, and their number.
+
+Impulse on the first body (N·s), last contact point (m), whether they met; then of the substep: depth, 0 where they are
+apart (m), and normal.
+"""
 
 
 @kept_part(SOURCES)
-def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
-    """Find which pairs overlap, change velocities and positions of the movable, and enter it in ``account`` (P, 7)."""
-    hits = np.empty((len(pairs), 6))  # number of the pair, depth, normal, point
+def part_bodies(rows: Rows, pairs: I32, statics: Statics, w: Work, account: F64) -> None:
+    """Find which pairs overlap, change velocities and positions of the movable, and enter it in ``account`` (P, 10)."""
     count = 0
-    a, b = np.empty(8), np.empty(8)
+    a, b = w.box, w.other_box
     for n in range(len(pairs)):
+        account[n, DEPTH] = 0.0
         if _both_rest(rows, pairs[n, 0], pairs[n, 1]):
             continue
         _write_box(rows[pairs[n, 0]], a)
@@ -48,17 +52,18 @@ def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
             _follow_slope(rows[pairs[n, 1]], b, a)
         depth, normal_x, normal_y, x, y = overlap(a, b)
         if depth > 0.0:
-            hits[count, 0], hits[count, 1] = n, depth
-            hits[count, 2], hits[count, 3], hits[count, 4], hits[count, 5] = normal_x, normal_y, x, y
+            account[n, DEPTH], account[n, NX], account[n, NY] = depth, normal_x, normal_y
             account[n, PX], account[n, PY] = x, y
             account[n, PZ] = 0.5 * (max(a[LOW], b[LOW]) + min(a[HIGH], b[HIGH]))
             account[n, TOUCHED] = 1.0
             count += 1
     for turn in range(_ROUNDS if count > 1 else min(count, 2)):
-        for k in range(count):
-            _strike(rows, pairs[int(hits[k, 0])], hits[k], RESTITUTION if turn == 0 else 0.0, account[int(hits[k, 0])])
-    for k in range(count):
-        _push_out(rows, pairs[int(hits[k, 0])], hits[k])
+        for n in range(len(pairs)):
+            if account[n, DEPTH] > 0.0:
+                _strike(rows, pairs[n], account[n], RESTITUTION if turn == 0 else 0.0)
+    for n in range(len(pairs) if count > 0 else 0):
+        if account[n, DEPTH] > 0.0:
+            _push_out(rows, pairs[n], account[n])
 
 
 @part
@@ -177,10 +182,10 @@ def push_at(rows: Rows, i: int, x: float, y: float, impulse_x: float, impulse_y:
 
 
 @part
-def _strike(rows: Rows, pair: I32, hit: F64, restitution: float, entry: F64) -> None:
+def _strike(rows: Rows, pair: I32, entry: F64, restitution: float) -> None:
     """Apply one contact's impulse: against approach along the normal, then against sliding across it."""
     i, j = pair[0], pair[1]
-    normal_x, normal_y, x, y = hit[2], hit[3], hit[4], hit[5]
+    normal_x, normal_y, x, y = entry[NX], entry[NY], entry[PX], entry[PY]
     approach = _point_speed(rows, i, x, y, normal_x, normal_y) - _point_speed(rows, j, x, y, normal_x, normal_y)
     if approach >= 0.0:
         return
@@ -200,18 +205,18 @@ def _strike(rows: Rows, pair: I32, hit: F64, restitution: float, entry: F64) -> 
 
 
 @part
-def _push_out(rows: Rows, pair: I32, hit: F64) -> None:
+def _push_out(rows: Rows, pair: I32, entry: F64) -> None:
     """Move two bodies out of each other along the normal, the lighter one further."""
     i, j = pair[0], pair[1]
     ease_i = 0.0 if is_fixed(rows[i]) else 1.0 / rows[i].mass_kg
     ease_j = 0.0 if j < 0 or is_fixed(rows[j]) else 1.0 / rows[j].mass_kg
-    out_m = _PUSHED_OUT * max(0.0, hit[1] - _SLOP_M) / (ease_i + ease_j)
+    out_m = _PUSHED_OUT * max(0.0, entry[DEPTH] - _SLOP_M) / (ease_i + ease_j)
     if out_m == 0.0:
         return
-    rows[i].position[0] += out_m * ease_i * hit[2]
-    rows[i].position[1] += out_m * ease_i * hit[3]
+    rows[i].position[0] += out_m * ease_i * entry[NX]
+    rows[i].position[1] += out_m * ease_i * entry[NY]
     rows[i].resting = False
     if j >= 0:
-        rows[j].position[0] -= out_m * ease_j * hit[2]
-        rows[j].position[1] -= out_m * ease_j * hit[3]
+        rows[j].position[0] -= out_m * ease_j * entry[NX]
+        rows[j].position[1] -= out_m * ease_j * entry[NY]
         rows[j].resting = False

@@ -1,4 +1,4 @@
-"""Which bodies may touch in the coming step: a hashed grid over the plane, so the cost grows with their number."""
+"""Which bodies of a world may touch in the coming step: a hashed grid, so the cost grows with their number."""
 
 import math
 
@@ -13,6 +13,7 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 CELL_M = 12.0
+_FEW_BODIES = 12  # each is compared with all others, which is quicker than a grid
 _MOST_CELLS_ACROSS = 6  # a body wider than that is compared with all others instead of filling the grid
 _SPEED_GAIN_MPS2 = 20.0  # what a body's speed may grow by while the pairs hold
 _SKIN_M = 0.2  # what pushing apart may move it by
@@ -44,20 +45,62 @@ def box_centre(v: Body) -> tuple[float, float]:
     return x, v.position[1] + sine * v.box_centre[0] + cosine * v.box_centre[1]
 
 
-@kept_part(SOURCES)
-def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
-    """Return (P, 2) of first body and second body, or -1 - n for the n-th static; ordered, each pair once.
+@part
+def write_circles(rows: Rows, dt_s: float, circles: F64) -> int:
+    """Write the circle that each body stays within for ``dt_s``, radius -1 for none; return how many can touch.
 
-    Teschner et al. 2003, "Optimized spatial hashing for collision detection of deformable objects".
+    ``circles`` (N, 3) are x, y and radius of the first bodies, m.
     """
-    circles = np.zeros((count, 3))
     entries = 0
-    for i in range(count):
+    for i in range(len(circles)):
         circles[i, 2] = -1.0
         if rows[i].alive and rows[i].collides:
             circles[i, 0], circles[i, 1] = box_centre(rows[i])
             circles[i, 2] = reach_of(rows[i], dt_s)
             entries += 1
+    return entries
+
+
+@kept_part(SOURCES)
+def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
+    """Return (P, 2) of first body and second body, or -1 - n for the n-th static; ordered, each pair once."""
+    circles = np.empty((count, 3))
+    entries = write_circles(rows, dt_s, circles)
+    pairs: I32 = np.empty((16 + 4 * entries, 2), np.int32)
+    if entries <= _FEW_BODIES:
+        found = pairs_of_few(rows, circles, statics, pairs)
+        if found > len(pairs):
+            pairs = np.empty((found, 2), np.int32)
+            found = pairs_of_few(rows, circles, statics, pairs)
+        return pairs[:found]
+    head, nodes, wide = _grid(circles, entries)
+    found = _pairs_of_many(rows, circles, head, nodes, wide, statics, pairs)
+    if found > len(pairs):
+        pairs = np.empty((found, 2), np.int32)
+        found = _pairs_of_many(rows, circles, head, nodes, wide, statics, pairs)
+    return pairs[:found]
+
+
+@part
+def pairs_of_few(rows: Rows, circles: F64, statics: Statics, pairs: I32) -> int:
+    """Write the pairs with circles that meet, body by body: its statics, then the bodies after it.
+
+    Returned: their number, or where ``pairs`` (P, 2) has too little room, a number of rows that is enough.
+    """
+    found = 0
+    for i in range(len(circles)):
+        if circles[i, 2] >= 0.0:
+            found = _add_statics(rows, i, circles, statics, pairs, found)
+            found = _add_all(rows, i, circles, pairs, found)
+    return found
+
+
+@part
+def _grid(circles: F64, entries: int) -> tuple[I32, I32, I32]:
+    """Return a hashed grid of ``entries`` circles: the first node of each place, body and next node, wide bodies.
+
+    Teschner et al. 2003, "Optimized spatial hashing for collision detection of deformable objects".
+    """
     size = 64
     while size < 4 * entries:
         size *= 2
@@ -65,7 +108,7 @@ def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
     nodes: I32 = np.empty((64 + 4 * entries, 2), np.int32)  # body, next node
     wide = np.empty(entries, np.int32)
     wide_count, used = 0, 0
-    for i in range(count - 1, -1, -1):
+    for i in range(len(circles) - 1, -1, -1):
         if circles[i, 2] < 0.0:
             continue
         x0, x1, y0, y1 = _cells(circles[i])
@@ -81,53 +124,44 @@ def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
                 nodes[used, 0], nodes[used, 1] = i, head[place]
                 head[place] = used
                 used += 1
-    return _collect(rows, circles, head, nodes, wide[:wide_count], statics)
+    return head, nodes, wide[:wide_count]
 
 
 @part
-def _collect(rows: Rows, circles: F64, head: I32, nodes: I32, wide: I32, statics: Statics) -> I32:
-    """Return the pairs with circles that meet, body by body: its statics, then the bodies after it."""
-    pairs: I32 = np.empty((64, 2), np.int32)
+def _pairs_of_many(rows: Rows, circles: F64, head: I32, nodes: I32, wide: I32, statics: Statics, pairs: I32) -> int:
+    """Write the pairs as :func:`pairs_of_few` does, by the grid of the circles."""
     found = 0
-    near: I32 = np.empty(64, np.int32)
     for i in range(len(circles)):
         if circles[i, 2] < 0.0:
             continue
-        near, near_count = _near_statics(circles[i], statics, near) if not is_fixed(rows[i]) else (near, 0)
-        for sign in (-1, 1):
-            if sign > 0:
-                near, near_count = _near_bodies(rows, i, circles, head, nodes, wide, near)
-            for k in range(near_count):
-                if found == len(pairs):
-                    pairs = _twice(pairs)
-                pairs[found, 0] = i
-                pairs[found, 1] = near[k] if sign > 0 else -1 - near[k]
-                found += 1
-    return pairs[:found]
+        found = _add_statics(rows, i, circles, statics, pairs, found)
+        x0, x1, y0, y1 = _cells(circles[i])
+        if x1 - x0 >= _MOST_CELLS_ACROSS or y1 - y0 >= _MOST_CELLS_ACROSS:
+            found = _add_all(rows, i, circles, pairs, found)
+            continue
+        first = found
+        for cx in range(x0, x1 + 1):
+            for cy in range(y0, y1 + 1):
+                node = head[_hash(cx, cy, len(head))]
+                while node >= 0:
+                    j = nodes[node, 0]
+                    if j > i and _may_meet(rows, i, j, circles):
+                        found = _insert(pairs, first, found, i, j)
+                    node = nodes[node, 1]
+        for k in range(len(wide)):
+            if wide[k] > i and _may_meet(rows, i, wide[k], circles):
+                found = _insert(pairs, first, found, i, wide[k])
+    return found
 
 
 @part
-def _near_bodies(rows: Rows, i: int, circles: F64, head: I32, nodes: I32, wide: I32, near: I32) -> tuple[I32, int]:
-    """Return the bodies after ``i`` with a circle that meets its own, ascending, in ``near`` (grown where needed)."""
-    found = 0
-    x0, x1, y0, y1 = _cells(circles[i])
-    if x1 - x0 >= _MOST_CELLS_ACROSS or y1 - y0 >= _MOST_CELLS_ACROSS:
-        for j in range(i + 1, len(circles)):
-            if _may_meet(rows, i, j, circles):
-                near, found = _insert(near, found, j)
-        return near, found
-    for cx in range(x0, x1 + 1):
-        for cy in range(y0, y1 + 1):
-            node = head[_hash(cx, cy, len(head))]
-            while node >= 0:
-                j = nodes[node, 0]
-                if j > i and _may_meet(rows, i, j, circles):
-                    near, found = _insert(near, found, j)
-                node = nodes[node, 1]
-    for k in range(len(wide)):
-        if wide[k] > i and _may_meet(rows, i, wide[k], circles):
-            near, found = _insert(near, found, wide[k])
-    return near, found
+def _add_all(rows: Rows, i: int, circles: F64, pairs: I32, found: int) -> int:
+    """Add the pairs of a body with all bodies after it."""
+    first = found
+    for j in range(i + 1, len(circles)):
+        if _may_meet(rows, i, j, circles):
+            found = _insert(pairs, first, found, i, j)
+    return found
 
 
 @part
@@ -140,16 +174,15 @@ def _may_meet(rows: Rows, i: int, j: int, circles: F64) -> bool:
 
 
 @part
-def _near_statics(circle: F64, statics: Statics, near: I32) -> tuple[I32, int]:
-    """Return the statics with a circle that meets the given one, ascending, in ``near`` (grown where needed)."""
-    frame = statics.bin_frame
-    found = 0
-    if len(statics.bin_items) == 0:
-        return near, 0
+def _add_statics(rows: Rows, i: int, circles: F64, statics: Statics, pairs: I32, found: int) -> int:
+    """Add the pairs of a movable body with statics with circles that meet its own, in the order of their numbers."""
+    frame, circle, first = statics.bin_frame, circles[i], found
+    if len(statics.bin_items) == 0 or is_fixed(rows[i]):
+        return found
     x0, x1 = (circle[0] - circle[2] - frame[0]) * frame[2], (circle[0] + circle[2] - frame[0]) * frame[2]
     y0, y1 = (circle[1] - circle[2] - frame[1]) * frame[2], (circle[1] + circle[2] - frame[1]) * frame[2]
     if not (x1 >= 0.0 and y1 >= 0.0 and x0 < frame[3] and y0 < frame[4]):
-        return near, 0
+        return found
     for row in range(int(max(0.0, y0)), int(min(frame[4] - 1.0, y1)) + 1):
         for column in range(int(max(0.0, x0)), int(min(frame[3] - 1.0, x1)) + 1):
             b = row * int(frame[3]) + column
@@ -158,27 +191,27 @@ def _near_statics(circle: F64, statics: Statics, near: I32) -> tuple[I32, int]:
                 x, y = statics.centre[n, 0] - circle[0], statics.centre[n, 1] - circle[1]
                 reach = circle[2] + math.hypot(statics.half[n, 0], statics.half[n, 1])
                 if x * x + y * y < reach * reach:
-                    near, found = _insert(near, found, n)
-    return near, found
+                    found = _insert(pairs, first, found, i, -1 - n)
+    return found
 
 
 @part
-def _insert(near: I32, count: int, item: int) -> tuple[I32, int]:
-    """Insert into an ascending list that holds each number once."""
-    if count == len(near):
-        grown = np.empty(2 * count, np.int32)
-        for k in range(count):
-            grown[k] = near[k]
-        near = grown
-    place = count
-    while place > 0 and near[place - 1] > item:
+def _insert(pairs: I32, first: int, found: int, i: int, other: int) -> int:
+    """Insert a pair into the rows from ``first`` to ``found``, which are in order; return the new end.
+
+    Without room the end grows all the same.
+    """
+    if found >= len(pairs):
+        return found + 1
+    place = found
+    while place > first and abs(pairs[place - 1, 1]) > abs(other):  # bodies ascend, and so do statics: -1, -2, -3
         place -= 1
-    if place > 0 and near[place - 1] == item:
-        return near, count
-    for k in range(count, place, -1):
-        near[k] = near[k - 1]
-    near[place] = item
-    return near, count + 1
+    if place > first and pairs[place - 1, 1] == other:
+        return found
+    for k in range(found, place, -1):
+        pairs[k, 0], pairs[k, 1] = pairs[k - 1, 0], pairs[k - 1, 1]
+    pairs[place, 0], pairs[place, 1] = i, other
+    return found + 1
 
 
 @part

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.columns import Columns, finite
+from linden.physics.columns import Columns, VehicleDesign, finite
 from linden.physics.state import VEHICLE
 from linden.physics.vehicle.controls import set_controls
 from linden.physics.vehicle.parameters import (
@@ -35,12 +35,6 @@ F64 = NDArray[np.float64]
 
 class VehicleApi(Columns):
     """The part of the bodies that concerns vehicles. Slots given here must hold one."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._physics: dict[int, VehiclePhysicsControl] = {}
-        self._offsets_m: dict[int, tuple[Vector3D, ...]] = {}
-        self._undercarriage: dict[int, Undercarriage] = {}
 
     def pose(self, slot: int) -> Transform:
         """Return where the actor's origin is, m and degrees."""
@@ -115,8 +109,8 @@ class VehicleApi(Columns):
 
     def physics_control(self, slot: int) -> VehiclePhysicsControl:
         """Return the vehicle's dynamics, with the wheels where they are now (cm, world)."""
-        control = self._physics[slot]
-        return control._replace(wheels=world_wheels(control, self.pose(slot), self._offsets_m[slot]))
+        design = self.design(slot)
+        return design.control._replace(wheels=world_wheels(design.control, self.pose(slot), design.offsets_m))
 
     def set_physics_control(self, slot: int, control: VehiclePhysicsControl) -> None:
         """Change the vehicle's dynamics while it drives; wheels at the world's origin stay where they are on it.
@@ -124,28 +118,29 @@ class VehicleApi(Columns):
         Raises:
             Refusal: the physics control describes nothing that can drive, or changes the number of wheels.
         """
-        check(control, wheel_count=len(self._physics[slot].wheels))
-        count = len(self._offsets_m[slot])
-        self._fit(slot, control, local_wheels(control, self.pose(slot), count) or self._offsets_m[slot])
+        design = self.design(slot)
+        check(control, wheel_count=len(design.control.wheels))
+        offsets_m = local_wheels(control, self.pose(slot), len(design.offsets_m)) or design.offsets_m
+        self._fit(slot, control, offsets_m, design.undercarriage)
 
-    def _fit(self, slot: int, control: VehiclePhysicsControl, offsets_m: Sequence[Vector3D]) -> None:
+    def _fit(
+        self, slot: int, control: VehiclePhysicsControl, offsets_m: Sequence[Vector3D], under: Undercarriage
+    ) -> None:
         s = self.state
         box = BoundingBox(Vector3D(*map(float, s["box_centre"][slot])), Vector3D(*map(float, s["half_extent"][slot])))
-        under = self._undercarriage[slot]
         com_m = centre_of_mass(control, box, offsets_m, under)
-        self.specs[slot] = specification(control, offsets_m, com_m, under)
+        design = VehicleDesign(control, tuple(offsets_m), under, com_m)
+        self.spec_of[slot] = self.table.row_of(design, lambda: specification(control, offsets_m, com_m, under))
         s["mass_kg"][slot] = control.mass
         s["yaw_inertia_kgm2"][slot] = HULL_INERTIA * yaw_inertia_kgm2(control.mass, box)
         s["centre_of_mass"][slot] = com_m
         s["target_gear"][slot] = min(s["target_gear"][slot], len(control.forward_gears))
         s["footing"][slot] = 0.0
         self.wake(slot)
-        self._physics[slot] = control
-        self._offsets_m[slot] = tuple(offsets_m)
 
     def _roll_along(self, slot: int) -> None:
         """Let the wheels roll with the body, in the lowest gear that suits, the engine with them."""
-        s, spec = self.state, self.specs[slot]
+        s, spec = self.state, self.spec(slot)
         count = int(spec["wheel_count"])
         yaw = float(s["rotation"][slot, 1])
         ahead = float(s["velocity"][slot, 0] * math.cos(yaw) + s["velocity"][slot, 1] * math.sin(yaw))
@@ -160,11 +155,6 @@ class VehicleApi(Columns):
             s["shift_left_s"][slot] = 0.0
         ratio = (0.0, *spec["gear_ratio"], spec["reverse_ratio"])[gear]
         s["engine_rpm"][slot] = np.clip(radps * ratio, 0.0, spec["engine_max_radps"]) * RPM_PER_RADPS
-
-    def _forget_vehicle(self, slot: int) -> None:
-        self._physics.pop(slot, None)
-        self._undercarriage.pop(slot, None)
-        self._offsets_m.pop(slot, None)
 
     # -- what it does --------------------------------------------------------------------------------------------------
 
@@ -189,15 +179,15 @@ class VehicleApi(Columns):
             brake=float(s["brake"][slot]),
             engine_rpm=float(s["engine_rpm"][slot]),
             gear=int(s["gear"][slot]),
-            drag=float(self.specs[slot]["drag_kgpm"]) * ahead * ahead,
+            drag=float(self.spec(slot)["drag_kgpm"]) * ahead * ahead,
             wheels=self._wheels_telemetry(slot),
         )
 
     def _wheels_telemetry(self, slot: int) -> tuple[WheelTelemetry, ...]:
         """Return as many as the physics control has wheels; two that stand for one share its load and forces."""
-        count = len(self._offsets_m[slot])
-        wheels = tuple(self._wheel_telemetry(slot, k) for k in range(count))
-        if count == len(self._physics[slot].wheels):
+        design = self.design(slot)
+        wheels = tuple(self._wheel_telemetry(slot, k) for k in range(len(design.offsets_m)))
+        if len(wheels) == len(design.control.wheels):
             return wheels
         return tuple(
             wheel._replace(
@@ -211,7 +201,7 @@ class VehicleApi(Columns):
         )
 
     def _wheel_telemetry(self, slot: int, k: int) -> WheelTelemetry:
-        s, spec = self.state, self.specs[slot]
+        s, spec = self.state, self.spec(slot)
         load_n = float(s["wheel_load"][slot, k])
         rest_n = float(spec["load_share"][k]) * float(s["mass_kg"][slot]) * 9.81
         here = float(s["friction_here"][slot])

@@ -20,9 +20,15 @@ class KeptShape(NamedTuple):
 
 
 class DebugShapes:
-    """The shapes of an episode, oldest first. Every one is shown in one frame at least."""
+    """The shapes of an episode, oldest first. Every one is shown in one frame at least.
+
+    Attributes:
+        drawn: how many shapes clients have drawn.
+        cleared: how often clients have cleared shapes.
+    """
 
     def __init__(self) -> None:
+        self.drawn = self.cleared = 0
         self._shown: list[KeptShape] = []
         self._new: list[KeptShape] = []
 
@@ -41,6 +47,7 @@ class DebugShapes:
         if lasts_s <= 0.0:
             lasts_s = 0.0 if isinstance(shape.primitive, _ON_SCREEN) else math.inf
         self._new.append(KeptShape(shape, now_s + lasts_s))
+        self.drawn += 1
         if len(self._shown) + len(self._new) <= MOST_SHAPES:
             return True
         (self._shown or self._new).pop(0)
@@ -58,9 +65,11 @@ class DebugShapes:
 
     def clear_strings(self) -> None:
         """Take away all text."""
+        self.cleared += 1
         self._shown = [kept for kept in self._shown if not isinstance(kept.shape.primitive, Text)]
         self._new = [kept for kept in self._new if not isinstance(kept.shape.primitive, Text)]
 
     def _keep(self, *, on_screen: bool) -> None:
+        self.cleared += 1
         self._shown = [kept for kept in self._shown if isinstance(kept.shape.primitive, _ON_SCREEN) is on_screen]
         self._new = [kept for kept in self._new if isinstance(kept.shape.primitive, _ON_SCREEN) is on_screen]

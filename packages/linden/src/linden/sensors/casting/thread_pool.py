@@ -42,13 +42,17 @@ def _tasks() -> "SimpleQueue[Task]":
     return tasks
 
 
-def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int) -> None:
+def in_stretches(
+    total: int, work: Callable[[int, int], None], *, multiple: int, fewest: int = FEWEST, threads: int = 0
+) -> None:
     """Call ``work(start, stop)`` for stretches that make up ``total``, each but the last a ``multiple`` long.
+
+    No stretch but the last is shorter than ``fewest``. At most ``threads`` work, 0 being all processors.
 
     ``work`` has to let go of Python's lock, and to do the same for each number whatever the stretch it is in.
     """
-    hands = processors()
-    length = -(-max(FEWEST, -(-total // (hands * _STRETCHES))) // multiple) * multiple
+    hands = min(threads, processors()) or processors()
+    length = -(-max(fewest, -(-total // (hands * _STRETCHES))) // multiple) * multiple
     if hands == 1 or total <= length:
         if total:
             work(0, total)

@@ -98,7 +98,8 @@ class VisibleActors:
         bodies = episode.bodies
         if len(rows.vehicles):
             slots = rows.slot[rows.vehicles]
-            hubs = np.stack([bodies.specs[name][slots] for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")], -1)
+            specs = bodies.spec(slots)
+            hubs = np.stack([specs[name] for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")], -1)
             rolling = (bodies.wheel_steer[slots], bodies.wheel_turned[slots])
             frames[rows.vehicles, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, *rolling)
         if len(rows.walkers):

@@ -62,6 +62,8 @@ class Context:
     """The lamps of all vehicles as they were packed last."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
+    after_frame: Callable[[], None] | None = None
+    """Called after each frame by a window; if it raises an error, the error is logged and it is not called again."""
     warnings: WarningLog = field(default_factory=WarningLog)
     bugs: WarningLog = field(default_factory=WarningLog)
 
@@ -74,6 +76,12 @@ class Context:
         if WORLD_OBSERVER_ID in listened:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.world)))
         self.outbox.extend(self.frames.sensor_payloads(self.world, listened))
+        if self.after_frame is not None:
+            try:
+                self.after_frame()
+            except Exception as error:  # noqa: BLE001 - a bug of a window must not end the sessions of clients
+                self.after_frame = None
+                self.log_bug("internal error in the window; the server goes on without it.", error)
         return self.world.frame
 
     def begin_pending_load(self) -> None:

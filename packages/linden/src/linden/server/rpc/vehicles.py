@@ -164,7 +164,7 @@ def set_wheel_pitch_angle(context: Context, actor_id: U32, wheel: U8, angle_deg:
 
 def _slot(episode: Episode, actor_id: int, wheel: int) -> int:
     slot = episode.vehicle(actor_id)
-    wheels = int(episode.bodies.specs["wheel_count"][slot])
+    wheels = int(episode.bodies.spec(slot)["wheel_count"])
     if wheel >= wheels:
         raise Refusal(f"vehicle {actor_id} has no wheel {wheel}; its wheels are 0 to {wheels - 1}")
     return slot

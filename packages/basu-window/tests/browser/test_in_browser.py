@@ -1,0 +1,96 @@
+"""Claims about drives in a real browser: a person at the keyboard and at a gamepad, and the slider of a record."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from basu.records.history.files import read_history
+from browsers import running_browser
+from fakes.run_records import crashing, record, written
+from opendrive_texts import SIGNS_AND_LIGHTS
+from window_pages import WAIT_MS, page_of
+
+BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
+PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],
+  buttons: Array.from({{length: 17}}, (_, at) => ({{value: at === 7 ? {throttle} : at === 6 ? {brake} : 0}}))}}]"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with running_browser() as found:
+        yield found
+
+
+@contextmanager
+def started(*words: str | Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Run a command until it prints the page's address."""
+    process = subprocess.Popen([*BASU, *words], stdout=subprocess.PIPE, text=True)
+    try:
+        said = ""
+        while (found := re.search(r"http://\S+/", said)) is None:
+            line = process.stdout.readline()
+            assert line, said
+            said += line
+        yield process, found[0]
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: Path) -> None:
+    folder = written(tmp_path / "a-run", record(crashing()))
+    (folder / "config.json").unlink()  # its fake has no scoring, and the default is meant
+    (tmp_path / "street.xodr").write_text(SIGNS_AND_LIGHTS)
+    with started("watch", folder, "--map", tmp_path / "street.xodr") as (_, address):
+        page = page_of(browser, address + "?flat&t=10")
+        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1", timeout=WAIT_MS)
+        assert page.evaluate("page.timeline.frames.length") == len(crashing().frames)
+        assert page.locator("#ticks button").count() == 3
+        page.wait_for_function("document.getElementById('score').innerText.includes('stop sign')", timeout=WAIT_MS)
+        page.locator("#ticks button").first.click(force=True)
+        before = page.evaluate("page.replay.clock")
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function(f"page.replay.clock > {before}", timeout=WAIT_MS)
+        page.keyboard.press("Space")
+        page.wait_for_function(f"page.replay.clock > {before} + 1", timeout=WAIT_MS)
+        assert page.errors == []
+        page.close()
+
+
+@pytest.mark.slow
+def test_a_person_drives_by_keyboard_and_gamepad(browser: Browser, tmp_path: Path) -> None:
+    route = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
+    words = ("run", "human", "--watch", "--routes", route, "--output", tmp_path)
+    with started(*words) as (process, address):
+        page = page_of(browser, address + "?flat")
+        speed = "(page.followed()?.speed ?? 0)"
+        page.wait_for_function("globalThis.page?.input.isOn && page.poses.length > 0", timeout=WAIT_MS)
+        page.keyboard.down("w")
+        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.keyboard.up("w")
+        page.keyboard.down(" ")
+        page.keyboard.down("s")
+        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        page.keyboard.up("s")
+        page.keyboard.up(" ")
+        page.evaluate(PAD.format(steer=0.0, throttle=0.8, brake=0))
+        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.evaluate(PAD.format(steer=0.5, throttle=0, brake=1))
+        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        assert "a person" in page.inner_text("#score")
+        assert page.errors == []
+        page.keyboard.press("Escape")
+        process.communicate(timeout=120)
+        page.close()
+    (folder,) = [each for each in tmp_path.iterdir() if (each / "history.parquet").exists() and not each.is_symlink()]
+    frames = read_history(folder).frames
+    assert frames["manual"].all()
+    assert frames["applied_throttle"].max() > 0.9  # of the key
+    assert frames["applied_steer"].max() > 0.4  # of the stick
+    assert frames["applied_hand_brake"].any()

@@ -1,0 +1,52 @@
+// @ts-check
+/** The WebSocket to the program: notes as JSON, frames as bytes, orders back. */
+
+import { Frame } from "./timeline.js";
+
+/** @typedef {Record<string, any> & {type: string}} Note */
+
+const AGAIN_MS = 2000;
+
+export class Connection {
+  /**
+   * @param {(note: Note) => void} onNote @param {(frame: Frame) => void} onFrame
+   * @param {(sentence: string) => void} onLost
+   */
+  constructor(onNote, onFrame, onLost) {
+    this.onNote = onNote;
+    this.onFrame = onFrame;
+    this.onLost = onLost;
+    this.bytes = 0;
+    this.hasEnded = false;
+    this.open();
+  }
+
+  open() {
+    const url = new URL("live", location.href);
+    url.protocol = "ws:";
+    const socket = new WebSocket(url);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }) => {
+      if (typeof data === "string") {
+        this.bytes += data.length;
+        const note = JSON.parse(data);
+        this.hasEnded ||= note.type === "end";
+        this.onNote(note);
+      } else {
+        this.bytes += data.byteLength;
+        this.onFrame(new Frame(data));
+      }
+    };
+    socket.onclose = ({ reason }) => {
+      if (this.hasEnded) return;
+      this.onLost(reason || "The connection to the program is lost. This page tries to connect again.");
+      if (!reason) setTimeout(() => this.open(), AGAIN_MS);
+    };
+    this.socket = socket;
+  }
+
+  /** @param {Record<string, unknown>} order */
+  send(order) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(order));
+  }
+}
