@@ -30,7 +30,17 @@ OPTIONAL = (
     "IPython",
     "nbclient",
     "warp",
-    *("linden_maps", "basu_carla_log", "basu_leaderboard", "basu_ros", "basu_search", "basu_sumo", "basu_window", "linden_window", "websockets"),
+    *(
+        "linden_maps",
+        "basu_carla_log",
+        "basu_leaderboard",
+        "basu_ros",
+        "basu_search",
+        "basu_sumo",
+        "basu_window",
+        "linden_window",
+        "websockets",
+    ),
 )
 ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>"""
 
