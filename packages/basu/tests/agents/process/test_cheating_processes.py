@@ -305,6 +305,51 @@ def test_an_agent_cannot_take_a_closed_port_for_itself(tmp_path: Path) -> None:
         RemoteAgent(found(tmp_path, deed), 10.0, 0).own_route()
 
 
+OTHER_WAYS = {
+    "plain": "s = socket.socket(); s.connect(PLACE)",
+    "multipath": "s = socket.socket(socket.AF_INET, socket.SOCK_STREAM, 262); s.connect(PLACE)",
+    "multipath of version 6": "s = socket.socket(socket.AF_INET6, socket.SOCK_STREAM, 262); s.connect(PLACE)",
+    "with the first data": "s = socket.socket(); s.sendto(b'x', socket.MSG_FASTOPEN, PLACE)",
+    "with the first message": "s = socket.socket(); s.sendmsg([b'x'], [], socket.MSG_FASTOPEN, PLACE)",
+    "another kind of socket": "s = socket.socket(43, socket.SOCK_STREAM); s.connect(PLACE)",
+    "turned into another kind": "s = socket.socket(); s.setsockopt(socket.IPPROTO_TCP, 31, b'smc'); s.connect(PLACE)",
+    "raw packets": "s = socket.socket(socket.AF_INET, socket.SOCK_RAW, 6); s.sendto(b'x', PLACE)",
+    "packets of a device": "s = socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM); s.send(b'x')",
+}
+
+
+@NEEDS_PORTS
+@pytest.mark.parametrize("way", OTHER_WAYS.values(), ids=OTHER_WAYS)
+def test_no_other_kind_of_socket_reaches_a_closed_port(tmp_path: Path, way: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0.2)
+        port = server.getsockname()[1]
+        deed = way.replace("PLACE", f"('127.0.0.1', {port})") + "; raise ValueError('reached it')"
+        with pytest.raises(AgentCrashedError, match=r"PermissionError|OSError"):
+            RemoteAgent(found(tmp_path, deed, closed_ports=(port,)), 10.0, 0).own_route()
+        with pytest.raises(TimeoutError):
+            server.accept()
+
+
+@NEEDS_PORTS
+def test_no_ring_of_the_kernel_makes_calls_past_the_filter(tmp_path: Path) -> None:
+    deed = (
+        "import ctypes; l = ctypes.CDLL(None, use_errno=True); r = l.syscall(425, 1, ctypes.create_string_buffer(120))"
+    )
+    deed += "; raise ValueError(f'ring {r}, error {ctypes.get_errno()}')"
+    with pytest.raises(AgentCrashedError, match="ring -1, error 38"):
+        RemoteAgent(found(tmp_path, deed, closed_ports=(1,)), 10.0, 0).own_route()
+
+
+def test_ports_do_not_hold_where_the_filter_cannot_be_set() -> None:
+    words = """if True:
+        from basu.agents.process import confinement, socket_filter
+        socket_filter.MACHINES.clear()
+        print(confinement.confine([], closed_ports=[1]))"""
+    done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
+    assert confinement.PORTS not in done.stdout
+
+
 def test_ports_are_closed_for_a_simulator_that_is_not_ours() -> None:
     assert closed_ports("10.0.0.1", 2000, is_open=False) == (2000, 2001, 2002, *TRAFFIC_PORTS)
     assert closed_ports("10.0.0.1", 2000, is_open=True) == ()

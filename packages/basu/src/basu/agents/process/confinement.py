@@ -12,6 +12,8 @@ import platform
 import sys
 from typing import TYPE_CHECKING
 
+from basu.agents.process.socket_filter import filter_sockets
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -81,7 +83,7 @@ def confine(
 
     Call it before the process has other threads. ``writable`` are the folders below which it may write;
     ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. It may neither
-    connect to ``closed_ports`` of TCP nor listen there, at any address.
+    connect to ``closed_ports`` of TCP nor listen there, at any address, nor can it send raw packets.
     """
     abi = landlock_abi()
     if abi == 0:
@@ -110,6 +112,7 @@ def confine(
             return []
     finally:
         os.close(ruleset)
+    has_ports = has_ports and filter_sockets()
     return [*([SIGNALS] if has_scopes else []), FILES, *([PORTS] if has_ports else [])]
 
 
