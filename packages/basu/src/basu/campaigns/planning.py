@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.campaigns.plan import (
     ID_DIGITS,
@@ -93,7 +94,12 @@ def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
     else:
         digest = ""
     try:
-        found = find_agent(typed, memory_gb=campaign.agent_memory_gb, writes=campaign.agent_writes)
+        found = find_agent(
+            typed,
+            memory_gb=campaign.agent_memory_gb,
+            writes=campaign.agent_writes,
+            closed_ports=closed_ports(None, 0, is_open=campaign.open),
+        )
     except UserError as error:
         raise UserError(f"{source}: {error}") from None
     if found.is_human:

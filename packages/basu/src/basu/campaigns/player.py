@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.campaigns.columns import metric_values
 from basu.campaigns.cost import cost_of
@@ -88,17 +89,21 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
         UserError: an agent, a scenario's or a metric's file cannot be used here.
         SimulatorError: there is no simulator.
     """
-    agents = {
-        typed: find_agent(typed, memory_gb=settings.agent_memory_gb, writes=settings.agent_writes)
-        for typed in settings.agents
-    }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
-    with (
-        simulator_for(SimulatorSpec(is_open=settings.open)) as simulator,
-        tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch,
-    ):
-        driver = _Player(settings, agents, library, own, simulator, Path(scratch))
-        yield driver.play
+    with tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch:
+        agents = {
+            typed: find_agent(
+                typed,
+                memory_gb=settings.agent_memory_gb,
+                writes=settings.agent_writes,
+                closed_ports=closed_ports(None, 0, is_open=settings.open),
+                output=None if settings.open else Path(scratch),
+            )
+            for typed in settings.agents
+        }
+        with simulator_for(SimulatorSpec(is_open=settings.open)) as simulator:
+            driver = _Player(settings, agents, library, own, simulator, Path(scratch))
+            yield driver.play
 
 
 class _Player:

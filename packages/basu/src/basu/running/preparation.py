@@ -95,6 +95,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
         memory_gb=options.agent_memory_gb,
         writes=options.agent_writes,
         closed_ports=closed_ports(options.host, options.port, is_open=options.open),
+        output=None if options.open else options.output,
     )
     with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
         agents = new_agents(loaded, options, options.seed, options.routes, has_conditions=has_conditions)

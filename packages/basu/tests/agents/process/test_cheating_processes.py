@@ -305,6 +305,39 @@ def test_an_agent_cannot_take_a_closed_port_for_itself(tmp_path: Path) -> None:
         RemoteAgent(found(tmp_path, deed), 10.0, 0).own_route()
 
 
+@NEEDS_SPACES
+def test_an_agent_sees_no_results_and_not_where_its_drive_is_written(tmp_path: Path) -> None:
+    """Names of folders said which case was driven, and the settings of a matrix which ones follow."""
+    output = tmp_path / "runs"
+    (output / "pedestrian_crossing_1").mkdir(parents=True)
+    (tmp_path / "agent").mkdir()
+    deed = f"raise ValueError('found ' + repr(os.listdir({str(output)!r})))"
+    agent = found(tmp_path / "agent", deed, output=output)
+    with pytest.raises(AgentCrashedError, match=r"found \[\]"):
+        RemoteAgent(agent, 10.0, 0).own_route()
+    assert confinement.RESULTS in agent.confinement
+    deed = f"import ctypes; ctypes.CDLL(None).umount2({str(output)!r}.encode(), 2); {deed}"
+    with pytest.raises(AgentCrashedError, match=r"found \[\]"):
+        RemoteAgent(found(tmp_path / "agent", deed, output=output), 10.0, 0).own_route()
+    assert (output / "pedestrian_crossing_1").is_dir()
+
+
+def test_a_folder_that_holds_the_agent_is_not_hidden_from_it(tmp_path: Path) -> None:
+    agent = found(tmp_path, "pass", output=tmp_path)
+    assert agent.bounds.hidden == ()
+    assert confinement.RESULTS not in agent.confinement
+
+
+@NEEDS_SPACES
+def test_a_folder_of_results_that_was_made_for_a_process_goes_with_it(tmp_path: Path) -> None:
+    output = tmp_path / "runs"
+    (tmp_path / "agent").mkdir()
+    agent = found(tmp_path / "agent", "pass", output=output)
+    assert output.is_dir()
+    agent.process().kill()
+    assert not output.exists()
+
+
 OTHER_WAYS = {
     "plain": "s = socket.socket(); s.connect(PLACE)",
     "multipath": "s = socket.socket(socket.AF_INET, socket.SOCK_STREAM, 262); s.connect(PLACE)",

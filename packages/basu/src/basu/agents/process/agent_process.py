@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.agents.process.channel import POLL_S, BenchmarksEnd, ChannelClosedError
 from basu.agents.process.endings import Ending, ended_how, ended_outside, oom_kills
-from basu.agents.process.keeper import END_LIMIT_S
+from basu.agents.process.keeper import END_LIMIT_S, Limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,24 +68,30 @@ class Memory(NamedTuple):
         return f"it used {used_gb:.2f} GB of memory, more than its limit of {self.limit_gb:g} GB"
 
 
+class Bounds(NamedTuple):
+    """The bounds of a process, beside those that all have."""
+
+    memory: Memory | None = None
+    writable: tuple[str, ...] = ()  # folders in which it may write beside its own
+    closed_ports: tuple[int, ...] = ()  # of TCP: it may neither connect to them nor listen there
+    hidden: tuple[str, ...] = ()  # folders in which it sees nothing, where the kernel allows it
+
+
 class AgentProcess:
     """One process with its keeper (`basu.agents.process.keeper`), in a session of its own: Ctrl-C does not reach it."""
 
-    def __init__(
-        self, memory: Memory | None = None, writable: tuple[str, ...] = (), closed_ports: tuple[int, ...] = ()
-    ) -> None:
-        """Start the process; no call is sent yet.
-
-        ``writable`` are folders in which it may write beside its own. It may neither connect to ``closed_ports`` nor
-        listen there.
-        """
+    def __init__(self, bounds: Bounds) -> None:
+        """Start the process; no call is sent yet. Hidden folders that are not there yet are made."""
         ours, theirs = socket.socketpair()
         self._control, kept = socket.socketpair()
         self._folder = Path(tempfile.mkdtemp(prefix="basu-agent-"))
         self._ooms = oom_kills()
-        may_write = [str(self._folder), *writable, *ALSO_WRITABLE]
-        limits = [json.dumps(may_write), json.dumps(closed_ports)]
-        arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), *limits]
+        self._made_folders = [Path(each) for each in bounds.hidden if not Path(each).exists()]
+        for made in self._made_folders:
+            made.mkdir(parents=True, exist_ok=True)
+        may_write = [str(self._folder), *bounds.writable, *ALSO_WRITABLE]
+        limits = Limits(may_write, list(bounds.closed_ports), list(bounds.hidden))
+        arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), json.dumps(limits)]
         with theirs, kept:
             self._process = subprocess.Popen(  # noqa: S603 - our own command
                 [sys.executable, "-c", KEEPER, *arguments],
@@ -96,7 +102,7 @@ class AgentProcess:
             )
         self._life = _life_of(self._process.pid)
         self._channel = BenchmarksEnd(ours, self._life)
-        self._memory = memory
+        self._memory = bounds.memory
         self._look_again_s = 0.0
         self._number = 0
         self._is_pending = False
@@ -183,6 +189,9 @@ class AgentProcess:
         if self._life is not None:
             os.close(self._life)
         shutil.rmtree(self._folder, ignore_errors=True)
+        for made in self._made_folders:
+            with contextlib.suppress(OSError):
+                made.rmdir()  # where no drive has written into it
 
     def _begin_run(self) -> None:
         """Let the keeper count the output of a new run."""

@@ -17,10 +17,11 @@ from basu.agents.process.socket_filter import filter_sockets
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-PROCESSES, SIGHT, SIGNALS, FILES, PORTS = "processes", "sight", "signals", "files", "ports"
+PROCESSES, SIGHT, RESULTS, SIGNALS, FILES, PORTS = "processes", "sight", "results", "signals", "files", "ports"
 MEANINGS = {
     PROCESSES: "all that it starts ends with it, and it can neither signal nor limit other processes",
     SIGHT: "it sees no other processes",
+    RESULTS: "it sees neither the folder of its drive nor results of others",
     SIGNALS: "it can signal and trace no other processes",
     FILES: "it writes in its own folder only",
     PORTS: "it can use neither the simulator's own ports nor those of Traffic Managers",

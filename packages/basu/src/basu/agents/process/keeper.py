@@ -48,6 +48,7 @@ class Limits(NamedTuple):
 
     writable: list[str]  # folders
     closed_ports: list[int]  # of TCP, at any address
+    hidden: list[str]  # folders in which it sees nothing, where namespaces are allowed
 
 
 class Ended(NamedTuple):
@@ -58,9 +59,9 @@ class Ended(NamedTuple):
 
 
 def main() -> None:
-    """Keep an agent's process: arguments are the descriptors of channel and control, writable folders, closed ports."""
+    """Keep an agent's process: arguments are the descriptors of channel and control, and the limits."""
     channel, control = int(sys.argv[2]), int(sys.argv[3])
-    limits = Limits(json.loads(sys.argv[4]), json.loads(sys.argv[5]))
+    limits = Limits(*json.loads(sys.argv[4]))
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     os.set_inheritable(channel, False)
     _set(PR_SET_CHILD_SUBREAPER, 1)
@@ -82,6 +83,8 @@ def main() -> None:
     if has_namespaces:
         if namespaces.mount_processes():
             held.append(confinement.SIGHT)
+        if limits.hidden and namespaces.hide(limits.hidden):
+            held.append(confinement.RESULTS)
         namespaces.number_next_process(keeper)
         agent = os.fork()
         if agent != 0:

@@ -11,9 +11,13 @@ import ctypes
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 NEW_MOUNTS, NEW_USERS, NEW_PROCESSES = 0x00020000, 0x10000000, 0x20000000  # CLONE_NEWNS, CLONE_NEWUSER, CLONE_NEWPID
-READ_ONLY_SAFE = 2 | 4 | 8  # MS_NOSUID, MS_NODEV, MS_NOEXEC
+READ_ONLY, SAFE = 1, 2 | 4 | 8  # MS_RDONLY; MS_NOSUID, MS_NODEV, MS_NOEXEC
 PRIVATE = 1 << 18 | 1 << 14  # MS_PRIVATE, MS_REC
 DROP_BOUND = 24  # PR_CAPBSET_DROP
 MOST_CAPABILITIES = 64
@@ -39,7 +43,14 @@ def mount_processes() -> bool:
     """Show this namespace's processes in ``/proc`` instead of all; whether the kernel allowed it."""
     libc = ctypes.CDLL(None, use_errno=True)
     libc.mount(None, b"/", None, PRIVATE, None)  # already so in a namespace of other users
-    return int(libc.mount(b"proc", b"/proc", b"proc", READ_ONLY_SAFE, None)) == 0
+    return int(libc.mount(b"proc", b"/proc", b"proc", SAFE, None)) == 0
+
+
+def hide(folders: Iterable[str]) -> bool:
+    """Show nothing in these folders, to this process and all that it starts; return whether the kernel allowed it."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    flags = READ_ONLY | SAFE
+    return all(int(libc.mount(b"empty", os.fsencode(each), b"tmpfs", flags, b"size=4k")) == 0 for each in folders)
 
 
 def number_next_process(number: int) -> None:

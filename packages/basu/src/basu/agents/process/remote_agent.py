@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import sys
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -12,7 +14,7 @@ import carla
 from basu.agents.autonomous_agent import AgentConfig, parse_config
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
 from basu.agents.loader import LOAD_LIMIT_S, LoadedAgent, is_name, load_agent
-from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError
+from basu.agents.process.agent_process import AgentProcess, Bounds, CallError, Death, Memory, OverLimitError
 from basu.agents.process.child import Place, Wanted
 from basu.agents.sensor_file import SensorSpec
 from basu.errors import (
@@ -53,28 +55,26 @@ class AgentInProcess(NamedTuple):
     is_human: bool
     wanted: str  # as it was typed
     agent_config: str | None
-    memory: Memory | None
-    writes: tuple[str, ...] = ()  # folders in which its process may write beside its own
-    closed_ports: tuple[int, ...] = ()  # its process may neither connect to them nor listen there
+    bounds: Bounds = Bounds()
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
-        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.memory, self.writes, self.closed_ports)
+        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.bounds)
         kept = _kept.get(key)
         if kept is None or not kept.alive:
-            kept = _kept[key] = AgentProcess(self.memory, self.writes, self.closed_ports)
+            kept = _kept[key] = AgentProcess(self.bounds)
         return kept
 
     @property
     def confinement(self) -> list[str]:
         """The parts of the confinement of its process that the kernel enforces (`basu.agents.process.confinement`)."""
-        return list(_enforced.get(self.closed_ports, ()))
+        return list(_enforced.get(self.bounds, ()))
 
 
-_enforced: dict[tuple[int, ...], tuple[str, ...]] = {}  # by closed ports; the same for all agents of a machine
+_enforced: dict[Bounds, tuple[str, ...]] = {}  # the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
-_kept: dict[tuple[str, Memory | None, tuple[str, ...], tuple[int, ...]], AgentProcess] = {}
+_kept: dict[tuple[str, Bounds], AgentProcess] = {}
 
 
 def find_agent(
@@ -85,11 +85,13 @@ def find_agent(
     memory_gb: float | None = None,
     writes: tuple[str, ...] = (),
     closed_ports: tuple[int, ...] = (),
+    output: Path | None = None,
 ) -> FoundAgent:
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
     ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own;
-    it may neither connect to ``closed_ports`` nor listen there.
+    it may neither connect to ``closed_ports`` nor listen there. It sees nothing in the folder ``output`` of drives, if
+    all that it needs lies elsewhere.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
@@ -101,11 +103,13 @@ def find_agent(
             raise UserError(f"--agent-writes {folder}: there is no such folder; make it first")
     memory = None if memory_gb is None else Memory(memory_gb)
     file = None if is_name(wanted.partition(":")[0]) else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
-    agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes, closed_ports)
+    needed = [*writes, *(str(each) for each in (file, agent_config) if each is not None)]
+    hidden = () if output is None or _holds(output, needed) else (str(output.resolve()),)
+    agent = AgentInProcess("", file, "", False, wanted, agent_config, Bounds(memory, writes, closed_ports, hidden))
     try:
         process = agent.process()
         found = process.call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
-        _enforced[closed_ports] = process.confinement or ()
+        _enforced[agent.bounds] = process.confinement or ()
     except OverLimitError:
         raise UserError(f"the agent's file {wanted} was not loaded within {LOAD_LIMIT_S:g} s") from None
     except Death as death:
@@ -118,6 +122,13 @@ def find_agent(
         )
     except (LookupError, TypeError) as error:
         raise UserError(f"the agent {wanted} does not load: its process gave it no name; mend its file") from error
+
+
+def _holds(folder: Path, needed: Sequence[str]) -> bool:
+    """Return whether something that an agent's process needs lies in a folder, or is it."""
+    here = folder.resolve()
+    places = [*needed, *sys.path, sys.prefix, str(Path.cwd()), tempfile.gettempdir()]
+    return any(here in (place, *place.parents) for place in (Path(each).resolve() for each in places))
 
 
 class RemoteAgent:

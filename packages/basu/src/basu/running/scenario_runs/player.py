@@ -61,6 +61,7 @@ def agents_of(options: ScenarioOptions) -> list[FoundAgent]:
             memory_gb=options.agent_memory_gb,
             writes=options.agent_writes,
             closed_ports=closed,
+            output=None if options.open else options.output,
         )
         for agent in options.agents
     ]
