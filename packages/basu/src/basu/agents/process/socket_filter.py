@@ -54,7 +54,7 @@ class _Program(ctypes.Structure):
 def filter_sockets() -> bool:
     """Refuse such calls to this thread and all that it starts; return whether the filter is in force.
 
-    The process must have given up new privileges before (``PR_SET_NO_NEW_PRIVS``).
+    The process must have given up new privileges before, as `confinement.confine` does.
     """
     machine = MACHINES.get(platform.machine()) if sys.platform == "linux" else None
     if machine is None:
