@@ -11,9 +11,11 @@ RUN useradd --create-home --uid 1000 linden \
     && mkdir -p /home/linden/drives/runs \
     && chown -R linden:linden /home/linden/drives
 WORKDIR /src
-COPY pyproject.toml constraints.txt README.md LICENSE ./
-COPY src ./src
-RUN pip install --no-cache-dir --constraint constraints.txt . && rm -rf /src
+COPY constraints.txt LICENSE ./
+COPY packages ./packages
+RUN pip install --no-cache-dir --constraint constraints.txt \
+    ./packages/linden ./packages/linden-maps ./packages/basu ./packages/basu-carla-log ./packages/basu-leaderboard \
+    && rm -rf /src
 
 # The packages' folder is the root user's: kernels and maps are kept in the user's cache folder, filled here.
 USER linden

@@ -52,5 +52,5 @@ observe:  ## docs/supported.json, from a live server: before `make pages` where 
 	$(BIN)/python scripts/observe_client.py
 
 clean:
-	rm -rf .venv build site src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf .venv build site packages/*/build packages/*/src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -not -path './.git/*' -exec rm -rf {} +

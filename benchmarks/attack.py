@@ -43,6 +43,11 @@ CRAFTED_EACH = 2000
 ENDLESS = [True, False, [True, 0.05], True, 1e-6, 10**6, 0.0, True, 3000.0, 2000.0, True]
 MAP_PARAMETERS = [2.0, 50.0, 1.0, 0.6, True, True, True]
 SETTINGS = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+FIRST_MAP, ALL_LAYERS = "Carla/Maps/Linden", 0xFFFF
+WARM_UP_TICKS = 100
+"""Before the memory is read the first time."""
+SETTLED_S = 3.0
+"""For work in the background of maps that are gone to end."""
 ANSWER_S = 120.0
 """How long a crafted packet waits for its answer."""
 GONE = (EOFError, OSError, ValueError, RuntimeError, AssertionError)
@@ -95,7 +100,7 @@ class Behaved(threading.Thread):
 
     def __init__(self, server: RunningServer) -> None:
         super().__init__(daemon=True)
-        self._server, self.ends = server, threading.Event()
+        self._server, self.ends, self.has_begun = server, threading.Event(), threading.Event()
         self.waits_s: list[float] = []
         self.refused = 0
 
@@ -105,6 +110,8 @@ class Behaved(threading.Thread):
             client.call("set_episode_settings", SETTINGS)
             client.call("spawn_actor", [0, "vehicle.tesla.model3", []], client.call("get_map_info")[1][0])
             while not self.ends.is_set():
+                if len(self.waits_s) == WARM_UP_TICKS:
+                    self.has_begun.set()
                 before = clocks.read()
                 try:
                     client.call("tick_cue")
@@ -150,6 +157,22 @@ class Held(threading.Thread):
             self.longest_s = max(self.longest_s, time.monotonic() - began_s)
 
 
+def resident_mib(process: psutil.Process) -> float:
+    """Return the memory that a process holds."""
+    return float(process.memory_info().rss / 2**20)
+
+
+def restore(port: int) -> None:
+    """Load the map of the start again and tick as the client that behaves did, for the memory to be compared."""
+    with RawClient(port, 300.0) as client:
+        client.call("load_new_episode", FIRST_MAP, True, ALL_LAYERS)
+        time.sleep(SETTLED_S)
+        client.call("set_episode_settings", SETTINGS)
+        client.call("spawn_actor", [0, "vehicle.tesla.model3", []], client.call("get_map_info")[1][0])
+        for _ in range(WARM_UP_TICKS):
+            client.call("tick_cue")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--packets", type=int, default=100_000)
@@ -161,7 +184,8 @@ def main() -> None:
         behaved.start()
         held = Held(server.port)
         held.start()
-        before_mib, most_mib, sent, began_s = process.memory_info().rss / 2**20, 0.0, 0, time.monotonic()
+        behaved.has_begun.wait()
+        before_mib, most_mib, sent, began_s = resident_mib(process), 0.0, 0, time.monotonic()
         for group in packets(arguments.seed, arguments.packets):
             if isinstance(group, Crafted):
                 held.send(group[0])
@@ -171,7 +195,7 @@ def main() -> None:
             if server.process.poll() is not None:
                 break
             if sent % 100 < len(group):
-                most_mib = max(most_mib, process.memory_info().rss / 2**20)
+                most_mib = max(most_mib, resident_mib(process))
         held.send(None)
         held.join(ANSWER_S)
         behaved.ends.set()
@@ -190,8 +214,12 @@ def main() -> None:
             f"its wait       median {waits_ms[len(waits_ms) // 2]:.1f} ms, 99.9 % below "
             f"{waits_ms[int(len(waits_ms) * 0.999)]:.0f} ms, worst {waits_ms[-1]:.0f} ms, other processes left out"
         )
-        after_mib = process.memory_info().rss / 2**20
-        print(f"memory         {before_mib:.0f} MiB before, {most_mib:.0f} at most, {after_mib:.0f} after")
+        last_mib = resident_mib(process)
+        restore(server.port)
+        print(
+            f"memory         {before_mib:.0f} MiB before, {most_mib:.0f} at most, {last_mib:.0f} on the last hostile "
+            f"map, {resident_mib(process):.0f} on the first map again"
+        )
         print(f"log            {len(log)} bytes in {log.count(chr(10))} lines")
 
 

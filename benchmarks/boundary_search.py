@@ -27,9 +27,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from basu.campaigns.search.rounds import round_sizes, space_filling
-from basu.campaigns.search.surrogate import SeveritySurrogate, Surrogate
 from basu.campaigns.settings import Search
+from basu_search.rounds import round_sizes, space_filling
+from basu_search.surrogate import SeveritySurrogate, Surrogate
 from boundary_regions import HELD_OUT, TUNING, Gap, Points, known_of, searched
 
 REGIONS = {"tuning": TUNING, "held-out": HELD_OUT}

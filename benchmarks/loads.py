@@ -38,7 +38,7 @@ def towns(folder: Path, town: str) -> None:
 
         text = ring()
     else:
-        text = (ROOT / "src" / "linden" / "data" / f"{town}.xodr").read_text("utf-8")
+        text = (ROOT / "packages" / "linden" / "src" / "linden" / "data" / f"{town}.xodr").read_text("utf-8")
     (folder / f"{TOWNS[0]}.xodr").write_text(text, "utf-8")
     moved = re.sub(r'(<geometry [^>]*?\bx=")([^"]+)', lambda found: f"{found[1]}{float(found[2]) + EAST_M!r}", text)
     (folder / f"{TOWNS[1]}.xodr").write_text(moved, "utf-8")

@@ -19,15 +19,15 @@ import tempfile
 import time
 from pathlib import Path
 
-from linden.authoring.aisan.convert import convert as aisan_of
-from linden.authoring.aisan.reading import complaints, read_folder
-from linden.authoring.lanelet2.checking import compare, reach, worst_error_m
-from linden.authoring.lanelet2.convert import convert
-from linden.authoring.lanelet2.osm import osm_bytes
-from linden.authoring.lanelet2.second_reader import routes_of
-from linden.authoring.output import write_folder
-from linden.cli.map_files import content_of
 from linden.maps.opendrive.parse import parse
+from linden_maps.aisan.convert import convert as aisan_of
+from linden_maps.aisan.reading import complaints, read_folder
+from linden_maps.cli.map_files import content_of
+from linden_maps.lanelet2.checking import compare, reach, worst_error_m
+from linden_maps.lanelet2.convert import convert
+from linden_maps.lanelet2.osm import osm_bytes
+from linden_maps.lanelet2.second_reader import routes_of
+from linden_maps.output import write_folder
 
 ROWS = (
     ("parse", "s"),

@@ -18,15 +18,15 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from linden.authoring.pointcloud.cloud import Cloud, in_map
-from linden.authoring.pointcloud.drive import Lidar, drive, places_along
-from linden.authoring.pointcloud.voxels import VoxelGrid
 from linden.maps.cache import MapCache
 from linden.maps.library import HOME_MAP, MapLibrary
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh_cache import standing_of
 from linden.sensors.casting.choose import caster_of
 from linden.simulation.surroundings import scenery_of
+from linden_maps.pointcloud.cloud import Cloud, in_map
+from linden_maps.pointcloud.drive import Lidar, drive, places_along
+from linden_maps.pointcloud.voxels import VoxelGrid
 
 F64 = NDArray[np.float64]
 VOXEL_M = 0.2

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.ros.dds import Node
-from basu.ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu.ros.topics import Topic, moment_messages, vehicle_topics
+from basu_ros.dds import Node
+from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.topics import Topic, moment_messages, vehicle_topics
 
 if TYPE_CHECKING:
     from collections.abc import Callable

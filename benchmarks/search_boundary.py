@@ -13,11 +13,11 @@ import numpy as np
 
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.report import studies_of
-from basu.campaigns.search.boundary_map import boundary_map
-from basu.campaigns.search.findings import MAY, SURE, boundary_in, searches_in
 from basu.output.report.scenarios.sweep.boundary import boundary_of
 from basu.output.report.scenarios.sweep.success_map import drawing, map_style
 from basu.output.report.templates import html
+from basu_search.boundary_map import boundary_map
+from basu_search.findings import MAY, SURE, boundary_in, searches_in
 
 STYLE = "body { display: flex; gap: 16px; margin: 8px; font: 15px sans-serif } figure { margin: 0; width: 640px }"
 

@@ -25,15 +25,15 @@ import psutil
 from live import STEP_S, synchronous_world
 
 from basu.simulator import OwnServer, connect
-from basu.sumo.bridge import Bridge
-from basu.sumo.link import in_process
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.scenario import config_in
+from basu_sumo.bridge import Bridge
+from basu_sumo.link import in_process
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.scenario import config_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.sumo.link import Link
+    from basu_sumo.link import Link
 
 SETTLE_TICKS = 40  # until all are spawned
 

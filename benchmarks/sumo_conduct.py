@@ -3,7 +3,7 @@
     python benchmarks/sumo_conduct.py --folder net/ [--run RUN] [--random N] [--minutes M] [--seed S]
 
 ``net/`` comes from `linden map sumo Linden -o net/`. RUN is the folder of any run on Linden: its vehicle under test is
-mirrored in SUMO along its recorded places. Without RUN, SUMO drives alone. The poses are those of `basu.sumo.Bridge`;
+mirrored in SUMO along its recorded places. Without RUN, SUMO drives alone. The poses are those of `basu_sumo.Bridge`;
 no simulator takes part. The table shows the same seed without and with the shuttle.
 """
 
@@ -25,16 +25,16 @@ from shapely import STRtree
 from shapely.affinity import rotate, translate
 from shapely.geometry import Point, Polygon, box
 
-from basu.sumo.bridge import Bridge
-from basu.sumo.link import in_process
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.road_users import RoadUser
-from basu.sumo.scenario import config_in
-from linden.authoring.sumo.net import read_net
+from basu_sumo.bridge import Bridge
+from basu_sumo.link import in_process
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.road_users import RoadUser
+from basu_sumo.scenario import config_in
 from linden.maps.facts import derive
 from linden.maps.navigation.areas import crosswalks
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import LaneType
+from linden_maps.sumo.net import read_net
 
 SHUTTLE_ID, SHUTTLE = 1, "vehicle.easymile.ez10"
 FAST_MPS, SIGHT_M = 5.0, 150.0

@@ -19,8 +19,8 @@ import psutil
 import sumolib
 import traci
 
-from basu.sumo.link import Link
-from basu.sumo.random_trips import RandomTrips
+from basu_sumo.link import Link
+from basu_sumo.random_trips import RandomTrips
 
 STEP_S = 0.05
 SETTLE_TICKS = 40

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from traffic import manager, populate
 from traffic_watch import F64, Fleet, Signs, Watch, fleet_of, stop_signs
 
-from basu.sumo.frames import from_sumo
-from basu.sumo.link import Link, in_process
-from basu.sumo.random_trips import RandomTrips
-from basu.sumo.scenario import config_in
-from linden.authoring.sumo.net import Net, read_net
+from basu_sumo.frames import from_sumo
+from basu_sumo.link import Link, in_process
+from basu_sumo.random_trips import RandomTrips
+from basu_sumo.scenario import config_in
 from linden.protocol.values.enums import TrafficLightState
+from linden_maps.sumo.net import Net, read_net
 
 ROW = np.dtype(
     [

@@ -2,7 +2,7 @@
 
 usage: python examples/rllib_training.py [--environments 4] [--runners 0] [--iterations 3] [--steps 2000] [--seed 0]
 
-``pip install linden[rllib]`` brings Ray's RLlib and PyTorch. RLlib makes one vector of environments for each of its
+``pip install basu[rllib]`` brings Ray's RLlib and PyTorch. RLlib makes one vector of environments for each of its
 runners, by the function that ``register_env`` names. Each environment has a worker process and a simulator of its own.
 PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".
 """

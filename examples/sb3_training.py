@@ -3,7 +3,7 @@
 usage: python examples/sb3_training.py train [--steps 300000] [--seed 0] [--output sb3]
        python examples/sb3_training.py compare [--policy sb3/policy.npz]
 
-``pip install linden[sb3]`` brings Stable-Baselines3 and PyTorch. ``compare`` needs neither. The routes are parts of the
+``pip install basu[sb3]`` brings Stable-Baselines3 and PyTorch. ``compare`` needs neither. The routes are parts of the
 LEAP route with bends, junctions and a roundabout, without other road users. They have no stop sign: an observation
 shows none. Each training route has a process and a simulator of its own.
 PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".

@@ -1,4 +1,4 @@
-"""Build a wheel that brings compiled kernels, so that a first start compiles nothing.
+"""Build a wheel of linden that brings compiled kernels, so that a first start compiles nothing.
 
     .venv/bin/python scripts/build_wheel.py [--python python3.12] [--output dist]
 
@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-SOURCES = ("src", "pyproject.toml", "README.md", "LICENSE")
+SOURCES = ("src", "pyproject.toml", "README.md", "LICENSE")  # of a distribution
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
 LEVELS = """
 import json, llvmlite.binding
@@ -31,17 +31,17 @@ print(json.dumps({"versions": versions(), "targets": sys.argv[1:]}))
 """
 
 
-def plain_wheel(folder: Path) -> Path:
-    """Build the wheel without kernels in a folder, from a copy of the sources without what was compiled."""
-    copy = folder / "sources"
+def plain_wheel(folder: Path, distribution: str = "linden") -> Path:
+    """Build a distribution's wheel without kernels in a folder, from a copy of its sources alone."""
+    copy, sources = folder / f"sources-{distribution}", ROOT / "packages" / distribution
     copy.mkdir()
     for name in SOURCES:
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+        if (sources / name).is_dir():
+            shutil.copytree(sources / name, copy / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
         else:
-            shutil.copy(ROOT / name, copy)
+            shutil.copy(sources / name, copy)
     _run(sys.executable, *PIP, "wheel", str(copy), "--no-deps", "--wheel-dir", str(folder))
-    (wheel,) = folder.glob("linden-*.whl")
+    (wheel,) = folder.glob(f"{distribution.replace('-', '_')}-*.whl")
     return wheel
 
 

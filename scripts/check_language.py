@@ -26,12 +26,10 @@ LONGEST_SENTENCE = 25
 """Words of a sentence in documents and docstrings; docs/decisions/0064-layout-and-language.md says why."""
 
 TREES: dict[str, tuple[str, ...]] = {
-    "src/linden": ("src/linden/**/*.py",),
-    "src/basu": ("src/basu/**/*.py",),
-    "src/linden_window": ("src/linden_window/**/*.py",),
-    "src/basu_window": ("src/basu_window/**/*.py",),
-    "docs": ("docs/**/*.md", "README.md", "CONTRIBUTING.md", "examples/**/*.md"),
-    "tests": ("tests/**/*.py",),
+    "linden": ("packages/linden*/src/**/*.py",),
+    "basu": ("packages/basu*/src/**/*.py",),
+    "docs": ("docs/**/*.md", "README.md", "CONTRIBUTING.md", "examples/**/*.md", "packages/*/README.md"),
+    "tests": ("tests/**/*.py", "packages/*/tests/**/*.py", "conftest.py"),
 }
 
 WORDS = {
@@ -147,7 +145,7 @@ def findings_in(file: Path) -> Iterator[Finding]:
     """Yield the findings in a file of code or text."""
     text = file.read_text("utf-8")
     lines = text.split("\n")
-    if "tests" in file.relative_to(ROOT).parts[:1]:
+    if {"tests", "conftest.py"} & {*file.relative_to(ROOT).parts}:
         yield from test_names(file, lines)
         return
     yield from avoided_words(file, lines)

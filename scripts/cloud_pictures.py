@@ -16,8 +16,8 @@ import numpy as np
 from matplotlib import colormaps
 from numpy.typing import NDArray
 
-from linden.authoring.pointcloud.pcd_reading import clouds_of
 from linden.protocol.values.enums import SemanticTag
+from linden_maps.pointcloud.pcd_reading import clouds_of
 
 F64 = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import basu.cli
 import linden.cli
+from basu import plugins
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "command-line.md"
 HEAD = """# Command line
@@ -40,7 +41,7 @@ def page() -> str:
 
 def all_parsers() -> Iterator[argparse.ArgumentParser]:
     """Yield the parser of each program and each command, a program's own first."""
-    yield from with_commands(basu.cli.parser([]), basu.cli.COMMANDS)
+    yield from with_commands(basu.cli.parser([]), {*basu.cli.COMMANDS, *plugins.offered(plugins.COMMANDS)})
     yield from with_commands(linden.cli.parser(), ())
 
 

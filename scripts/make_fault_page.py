@@ -40,7 +40,7 @@ with its front is. A contact of the ego's side is its fault unless the ego is wi
 
 The pictures show the way of the last five seconds. The ego is blue, the other is orange. Both are solid at the moment
 of the contact, and paler one and two seconds before it. North is up. The verdicts are checked by
-`tests/basu/metrics/test_fault.py`.
+`packages/basu/tests/metrics/test_fault.py`.
 
 """
 EGO, THEM = "#1f5fa8", "#d9690f"

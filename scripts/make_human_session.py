@@ -1,4 +1,4 @@
-"""Makes src/basu/data/human_session.json, the session of keys of the row "human" in the thesis's experiment.
+"""Makes data/human_session.json of basu, the session of keys of the row "human" in the thesis's experiment.
 
 Nobody sat there: a program pressed the keys. It takes the basic driver's wishes for the pedals and the wheel and
 answers each tick with those of W, A, S and D that bring the keyboard's pedals and wheel nearest to them, on and off, as
@@ -25,15 +25,15 @@ import carla
 import numpy as np
 
 from basu.agents.builtin.basic import BasicAgent, HumanAgent
-from basu.agents.manual.inputs import Held, Input, PedalsAndWheel, after, steer_after
-from basu.agents.manual.session import Session, Setting, write_session
 from basu.cli import main as basu
 from basu.conditions import STEP_S
+from basu_window.manual.inputs import Held, Input, PedalsAndWheel, after, steer_after
+from basu_window.manual.session import Session, Setting, write_session
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-FILE = Path(__file__).parents[1] / "src" / "basu" / "data" / "human_session.json"
+FILE = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu" / "data" / "human_session.json"
 BY = "scripts/make_human_session.py: a program pressed the keys, on and off, as the basic driver wished"
 HASTE = ((198.0, 226.0, 6.0), (325.0, 375.0, 8.0), (570.0, 615.0, 8.0))
 """Straights: from where to where along the route W is held down, and to which speed in m/s S brakes afterwards."""

@@ -22,7 +22,7 @@ import matplotlib.image
 import numpy as np
 from numpy.typing import NDArray
 
-ROUTE = Path("src/basu/routes/linden_leap.xml")
+ROUTE = Path("packages/basu/src/basu/routes/linden_leap.xml")
 PLACES = (0.125, 0.375, 0.725, 0.775, 0.925)  # of the route's points: streets of both widths, a roundabout
 SEAT = carla.Transform(carla.Location(x=1.5, z=1.9), carla.Rotation(pitch=-4.0))
 WEATHERS = {

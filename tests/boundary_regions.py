@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from basu.campaigns.search.boundary_search import BoundarySearch
-from basu.campaigns.search.rounds import Known, Round
 from basu.campaigns.settings import Search
+from basu_search.boundary_search import BoundarySearch
+from basu_search.rounds import Known, Round
 
 Points = NDArray[np.float64]
 Gap = Callable[[Points], Points]  # (N, D) to (N,): the distance to a region, negative inside

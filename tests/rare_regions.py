@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 from scipy.stats import ncx2
 
-from basu.campaigns.search.proposal import guards_in, weights_of
-from basu.campaigns.search.rare_event import CrossEntropy, RareEvent, estimate
-from basu.campaigns.search.rounds import Known, Round
 from basu.campaigns.settings import Estimate
+from basu_search.proposal import guards_in, weights_of
+from basu_search.rare_event import CrossEntropy, RareEvent, estimate
+from basu_search.rounds import Known, Round
 
 Gap = Callable[[NDArray[np.float64]], NDArray[np.float64]]  # (N, D) to (N,): the distance to a region, negative inside
 

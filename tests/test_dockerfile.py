@@ -11,7 +11,10 @@ else:
 
 ROOT = Path(__file__).parents[1]
 LINES = (ROOT / "Dockerfile").read_text(encoding="utf-8").replace("\\\n", " ").splitlines()
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PROJECTS = {
+    name: tomllib.loads((ROOT / "packages" / name / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for name in ("linden", "basu")
+}
 
 
 def instructions(name: str) -> list[str]:
@@ -22,7 +25,7 @@ def instructions(name: str) -> list[str]:
 def test_every_copied_file_exists_and_is_sent_to_the_daemon() -> None:
     sent = (ROOT / ".dockerignore").read_text(encoding="utf-8").splitlines()
     copied = [name for line in instructions("COPY") for name in line.split()[:-1]]
-    assert {"pyproject.toml", "src", *PROJECT["license-files"], PROJECT["readme"]} <= set(copied)
+    assert {"packages", "LICENSE"} <= set(copied), "the distributions' licences are links to the project's"
     for name in copied:
         assert (ROOT / name).exists(), name
         assert f"!{name}" in sent
@@ -33,11 +36,16 @@ def test_every_command_is_one_of_the_projects() -> None:
 
     (command,) = instructions("CMD")
     words = re.findall(r'"([^"]*)"', command)
-    assert words[0] in PROJECT["scripts"]
+    assert words[0] in PROJECTS["linden"]["scripts"]
     arguments = parser().parse_args(words[1:])
     assert (arguments.host, arguments.port) == ("0.0.0.0", 2000)
     assert "linden compile" in instructions("RUN")
     assert callable(parser().parse_args(["compile"]).command)
+
+
+def test_it_installs_the_server_and_the_benchmark() -> None:
+    (install,) = [line for line in instructions("RUN") if line.startswith("pip install")]
+    assert {f"./packages/{name}" for name in PROJECTS} <= set(install.split())
 
 
 def test_it_runs_as_a_user_without_rights_on_the_ports_of_carla() -> None:
@@ -50,5 +58,7 @@ def test_it_runs_as_a_user_without_rights_on_the_ports_of_carla() -> None:
 def test_its_python_is_one_that_the_project_supports() -> None:
     (image,) = instructions("FROM")
     version = tuple(map(int, re.findall(r"\d+", image)[:2]))
-    lowest, highest = (tuple(map(int, re.findall(r"\d+", bound))) for bound in PROJECT["requires-python"].split(","))
+    lowest, highest = (
+        tuple(map(int, re.findall(r"\d+", bound))) for bound in PROJECTS["linden"]["requires-python"].split(",")
+    )
     assert lowest <= version < highest

@@ -8,7 +8,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(path for path in ROOT.glob("**/src/*/**/*.py") if ".venv" not in path.parts)
 NAME = re.compile(r"``([A-Za-z_]\w*(?:\.\w+)*)(?:\(\))?``")
-MODULE_PATH = re.compile(r"\b((?:linden|basu)(?:\.[A-Za-z_]\w*)+)")
+PACKAGES = "|".join(path.parent.name for path in ROOT.glob("packages/*/src/*/__init__.py"))
+MODULE_PATH = re.compile(rf"\b((?:{PACKAGES})(?:\.[A-Za-z_]\w*)+)")
 FOREIGN = {
     "CARLA": {
         *("CarlaRecorder.cpp", "CarlaRecorderQuery.cpp", "CarlaReplayer.cpp", "CarlaReplayerHelper.cpp"),

@@ -1,7 +1,8 @@
-"""The wheel outside of the checkout: both commands drive a route, without the optional packages.
+"""The wheels of linden and basu outside of the checkout: both commands drive a route, without plugins.
 
-The wheel is installed into an environment of its own. A .pth file lets it find the packages that the wheel needs among
-those of the tests; optional ones are hidden. The wheel brings the kernels that the checkout has compiled.
+The wheels are installed into an environment of their own. A .pth file lets it find the packages that they need among
+those of the tests; optional ones and plugins are hidden. The server's wheel brings the kernels that the checkout has
+compiled.
 """
 
 import json
@@ -16,6 +17,7 @@ from pathlib import Path
 import pytest
 from build_wheel import PIP, plain_wheel, with_kernels
 
+from basu_fixtures import SHORT_ROUTE
 from linden.compiled import COMPILER_IS_OFF, TARGET
 
 ROOT = Path(__file__).parents[1]
@@ -28,20 +30,32 @@ OPTIONAL = (
     "IPython",
     "nbclient",
     "warp",
+    *(
+        "linden_maps",
+        "basu_carla_log",
+        "basu_leaderboard",
+        "basu_ros",
+        "basu_search",
+        "basu_sumo",
+        "basu_window",
+        "linden_window",
+        "websockets",
+    ),
 )
 ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>"""
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the environment that has the wheel."""
+    """Return the environment that has the wheels."""
     folder = tmp_path_factory.mktemp("wheel")
-    wheel = with_kernels(plain_wheel(folder), ROOT / "src", sys.executable, [TARGET], folder / "dist")
+    sources = ROOT / "packages" / "linden" / "src"
+    wheel = with_kernels(plain_wheel(folder), sources, sys.executable, [TARGET], folder / "dist")
     environment = folder / "environment"
     venv.create(environment, with_pip=False)
     python = environment / "bin" / "python"
     install = [*PIP, "--python", str(python), "install", "--no-deps", "--no-compile"]  # imports compile what they need
-    subprocess.run([sys.executable, *install, str(wheel)], check=True)
+    subprocess.run([sys.executable, *install, str(wheel), str(plain_wheel(folder, "basu"))], check=True)
     packages = next(environment.glob("lib/python*/site-packages"))
     hiding = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL!r}))"
     (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
@@ -66,7 +80,7 @@ def run(environment: Path, folder: Path, *command: str) -> "subprocess.Completed
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_basu_run_drives_with_the_simulator_of_the_wheel(installed: Path, tmp_path: Path) -> None:
-    lines = (ROOT / "src" / "basu" / "routes" / "linden_short.xml").read_text(encoding="utf-8").splitlines()
+    lines = SHORT_ROUTE.read_text(encoding="utf-8").splitlines()
     points = [line for line in lines if "<position" in line or "<waypoint " in line][:3]
     (tmp_path / "piece.xml").write_text(ROUTE.format(points="".join(points)), encoding="utf-8")
     done = run(
@@ -89,7 +103,7 @@ def test_both_packages_are_those_of_the_wheel(installed: Path, tmp_path: Path) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list"]])
+@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "serve", "--help"], ["basu", "list"]])
 def test_commands_need_no_optional_package(installed: Path, tmp_path: Path, command: list[str]) -> None:
     done = run(installed, tmp_path, *command)
     assert done.returncode == 0, done.stderr

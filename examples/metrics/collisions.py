@@ -3,7 +3,7 @@
 basu metrics runs/latest --metric examples/metrics/collisions.py
 """
 
-from basu.records.carla_log.metric_file import BasicMetric
+from basu_carla_log.metric_file import BasicMetric
 
 SCENERY = 0xFFFFFFFF
 

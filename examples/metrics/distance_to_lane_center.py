@@ -6,7 +6,7 @@ basu metrics runs/latest --metric examples/metrics/distance_to_lane_center.py --
 import matplotlib.pyplot as plt
 import numpy as np
 
-from basu.records.carla_log.metric_file import BasicMetric
+from basu_carla_log.metric_file import BasicMetric
 
 
 class DistanceToLaneCenter(BasicMetric):

@@ -6,7 +6,7 @@ basu metrics runs/latest --metric examples/metrics/nearest_vehicle.py --plot nea
 import matplotlib.pyplot as plt
 import numpy as np
 
-from basu.records.carla_log.metric_file import BasicMetric
+from basu_carla_log.metric_file import BasicMetric
 
 NEAR_M = 100.0  # what is farther away is left out: ScenarioRunner keeps who waits for its cue 500 m below the ground
 

@@ -14,13 +14,13 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).parents[2] / "tests"))
 
 from fakes import asam
-from linden.authoring.checks.check import Severity, check
-from linden.authoring.openstreetmap.convert import convert
-from linden.authoring.streets.build import assembled
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.writing import text
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
+from linden_maps.checks.check import Severity, check
+from linden_maps.openstreetmap.convert import convert
+from linden_maps.streets.build import assembled
+from linden_maps.streets.geojson import read
+from linden_maps.streets.writing import text
 
 
 def row(extract: Path) -> str:

@@ -16,14 +16,14 @@ from typing import Any, NamedTuple
 import sumo
 import sumolib
 
-from linden.authoring.checks.check import Severity, check
-from linden.authoring.openstreetmap.convert import convert
-from linden.authoring.streets.build import assembled
-from linden.authoring.streets.geojson import read
-from linden.authoring.streets.writing import text
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import LaneType
+from linden_maps.checks.check import Severity, check
+from linden_maps.openstreetmap.convert import convert
+from linden_maps.streets.build import assembled
+from linden_maps.streets.geojson import read
+from linden_maps.streets.writing import text
 
 _LEFT_OUT = "highway.footway,highway.service,highway.cycleway,highway.path,highway.steps,highway.pedestrian"
 

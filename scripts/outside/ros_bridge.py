@@ -30,11 +30,11 @@ from typing import TYPE_CHECKING, Any
 import carla
 import numpy as np
 
-from basu.agents.ros.vehicle_source import control_of, info_message
 from basu.records.motion import motion_of
-from basu.ros.moment import Actor, Light, Measurement, Moment, Motion, Mount, Vehicle
-from basu.ros.ros1 import Node
-from basu.ros.topics import (
+from basu_ros.agents.vehicle_source import control_of, info_message
+from basu_ros.moment import Actor, Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.ros1 import Node
+from basu_ros.topics import (
     LIGHTS,
     Message,
     Topic,

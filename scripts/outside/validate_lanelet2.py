@@ -16,14 +16,14 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
-from linden.authoring.lanelet2.bus_stops import shuttle_stops
-from linden.authoring.lanelet2.convert import Wanted, convert
-from linden.authoring.lanelet2.model import without_lanelets
-from linden.authoring.lanelet2.osm import osm_bytes, read_osm
-from linden.authoring.lanelet2.projection import NOWHERE, projection_of
-from linden.authoring.lanelet2.stretches import WALKWAY
-from linden.cli.map_files import is_built_in
-from linden.cli.map_source import opendrive_of
+from linden_maps.cli.map_files import is_built_in
+from linden_maps.cli.map_source import opendrive_of
+from linden_maps.lanelet2.bus_stops import shuttle_stops
+from linden_maps.lanelet2.convert import Wanted, convert
+from linden_maps.lanelet2.model import without_lanelets
+from linden_maps.lanelet2.osm import osm_bytes, read_osm
+from linden_maps.lanelet2.projection import NOWHERE, projection_of
+from linden_maps.lanelet2.stretches import WALKWAY
 
 
 class Findings(NamedTuple):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = re.compile(r"\bdocs/[\w/-]+\.md\b")
-FOLDERS = ("src", "examples", "scripts", "benchmarks")
+FOLDERS = ("packages", "examples", "scripts", "benchmarks")
 
 
 def test_every_page_that_the_code_names_is_there() -> None:

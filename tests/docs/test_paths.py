@@ -8,13 +8,18 @@ from pathlib import Path
 
 import pytest
 
+import linden.cli
+from basu import plugins
 from docs.pages import INLINE, PAGES, ROOT, without_fences
 
 TEXTS = [*PAGES, ROOT / "CHANGELOG.md"]
-FROM_ROOT = re.compile(r"(?<![\w/.…])((?:src|tests|scripts|examples|benchmarks|docs)/[\w./*-]*[\w*])")
-MODULE = re.compile(r"(?<![\w./-])((?:basu|linden)(?:\.\w+)+)(?!\.?[\w/])")
+FROM_ROOT = re.compile(r"(?<![\w/.…])((?:src|packages|tests|scripts|examples|benchmarks|docs)/[\w./*-]*[\w*])")
+PACKAGES = "|".join(path.parent.name for path in ROOT.glob("packages/*/src/*/__init__.py"))
+MODULE = re.compile(rf"(?<![\w./-])((?:{PACKAGES})(?:\.\w+)+)(?!\.?[\w/])")
 PART = re.compile(r"^(?:\w+/)+\w+\.(?:py|json|geojson|xodr|md)$")
 OTHERS = "outside-programs.md"  # names files of other programs
+GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS}
+"""Of entry points; no modules."""
 FILES = (".osm", ".pcd", ".xml", ".xodr")  # ends of names of files, not of modules
 
 
@@ -62,7 +67,8 @@ def test_each_module_or_member_exists(page: Path) -> None:
     text = re.sub(r"https?://\S+", "", page.read_text("utf-8"))
     typed = re.findall(r"^ *(?:from|import) \S+|python -m \S+", text, re.MULTILINE)
     code = " ".join([*INLINE.findall(without_fences(text)), *typed])
-    assert not sorted(name for name in set(MODULE.findall(code)) if not (name.endswith(FILES) or member_exists(name)))
+    named = {name for name in MODULE.findall(code) if not name.endswith(FILES) and name not in GROUPS}
+    assert not sorted(name for name in named if not member_exists(name))
 
 
 def member_exists(name: str) -> bool:
@@ -84,7 +90,7 @@ def member_exists(name: str) -> bool:
 
 
 def test_what_does_not_exist_is_found() -> None:
-    assert not exists("src/basu/no_such_module.py")
-    assert exists("src/basu/agents")
+    assert not exists("packages/basu/src/basu/no_such_module.py")
+    assert exists("packages/basu/src/basu/agents")
     assert not member_exists("basu.no_such_module")
     assert member_exists("basu.agents.sight.Sight")

@@ -6,8 +6,8 @@
 
 import sys
 
-from basu.ros import autoware_ai, dds, ros1
-from basu.ros.topics import CLOCK, Message, control_of, odometry_of
+from basu_ros import autoware_ai, dds, ros1
+from basu_ros.topics import CLOCK, Message, control_of, odometry_of
 
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0

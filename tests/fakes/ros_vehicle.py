@@ -4,8 +4,8 @@ from types import SimpleNamespace as Fake
 
 import numpy as np
 
-from basu.ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu.ros.topics import Topic
+from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.topics import Topic
 
 LIDAR = Mount("LIDAR", "sensor.lidar.ray_cast", 0.0, 0.0, 2.4)
 VEHICLE = Vehicle("hero", [LIDAR])

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import coverage
 import pytest
-
 from conftest import LONGEST
+
 from tracing import untraced, untraced_processes
 
-TESTS = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("name", LONGEST)
 def test_a_file_that_starts_early_exists(name: str) -> None:
-    assert (TESTS / name).is_file()
+    assert (ROOT / name).is_file()
 
 
 def test_no_coverage_is_measured_within_the_block_and_it_goes_on_after_it(

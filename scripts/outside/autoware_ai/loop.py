@@ -24,10 +24,10 @@ from matplotlib import pyplot as plt
 from stack import running_stack
 
 from basu.records.history.files import read_history
-from basu.ros.autoware_ai import NDT_POSE
-from basu.ros.ros1 import Node
-from basu.ros.topics import odometry_of
-from basu.ros.vehicle_messages import NS_PER_S
+from basu_ros.autoware_ai import NDT_POSE
+from basu_ros.ros1 import Node
+from basu_ros.topics import odometry_of
+from basu_ros.vehicle_messages import NS_PER_S
 
 LAUNCH = Path(__file__).parents[3] / "docker" / "autoware" / "autoware_ai.launch"
 BASU = "import sys; from basu.cli import main; sys.exit(main(sys.argv[1:]))"

@@ -28,12 +28,12 @@ from rosbags.highlevel import AnyReader
 from stack import Stack, running_stack
 
 from basu.errors import UserError
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.autoware_ai import GNSS_POSE, NDT_POSE, POINTS, POSE
-from basu.ros.ros1 import Node
-from basu.ros.topics import CLOCK, TF_STATIC, Message, Topic, odometry_of
-from basu.ros.types import Generation, Types
-from basu.ros.vehicle_messages import NS_PER_S
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.autoware_ai import GNSS_POSE, NDT_POSE, POINTS, POSE
+from basu_ros.ros1 import Node
+from basu_ros.topics import CLOCK, TF_STATIC, Message, Topic, odometry_of
+from basu_ros.types import Generation, Types
+from basu_ros.vehicle_messages import NS_PER_S
 
 MAP_STAT = Topic("/pmap_stat", "std_msgs/msg/Bool")
 TIME = Topic("/time_ndt_matching", "std_msgs/msg/Float32", depth=10)

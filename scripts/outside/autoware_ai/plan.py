@@ -24,15 +24,15 @@ import numpy as np
 from matplotlib import pyplot as plt
 from stack import Stack, running_stack
 
-from basu.ros import frames
-from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.autoware_ai import GOAL, INITIAL_POSE, still_messages
-from basu.ros.frames import Pose
-from basu.ros.moment import Vehicle
-from basu.ros.ros1 import Node
-from basu.ros.topics import Message, Topic
 from basu.routing import plan as joined
 from basu.routing.route_file import read_routes
+from basu_ros import frames
+from basu_ros import vehicle_messages as of_vehicle
+from basu_ros.autoware_ai import GOAL, INITIAL_POSE, still_messages
+from basu_ros.frames import Pose
+from basu_ros.moment import Vehicle
+from basu_ros.ros1 import Node
+from basu_ros.topics import Message, Topic
 
 PATHS = Topic("/global_waypoints_rviz", "visualization_msgs/msg/MarkerArray")
 MAP_STAT = Topic("/vmap_stat", "std_msgs/msg/Bool")

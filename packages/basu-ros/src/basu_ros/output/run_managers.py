@@ -1,0 +1,45 @@
+"""The output ``ros``: the managers that publish a run on ROS and write it as a bag."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from basu.extras import require
+from basu_ros.extras import CYCLONEDDS
+from basu_ros.output.bag_manager import BagManager
+from basu_ros.output.publish_manager import PublishManager
+from basu_ros.ros1 import Node as Ros1Node
+from basu_ros.ros1 import require_roscore
+from basu_ros.types import Generation
+
+if TYPE_CHECKING:
+    from basu.managers.base_manager import BaseManager
+    from basu.options.drive import DriveOptions
+    from basu.running.outputs import Drive
+
+
+def check(options: DriveOptions) -> None:
+    """Check that DDS is installed for ``--ros2``, and that a roscore answers for ``--ros1``.
+
+    Raises:
+        UserError: something is missing.
+    """
+    if options.ros2:
+        require(CYCLONEDDS)
+    if options.ros1:
+        require_roscore()
+
+
+def managers(options: DriveOptions, drive: Drive) -> list[BaseManager]:
+    """Return the managers of ``--ros2``, ``--ros1`` and ``--rosbag``."""
+    found: list[BaseManager] = []
+    live, say = drive.live, drive.say
+    if options.ros2:
+        from basu_ros.dds import Node as Ros2Node  # noqa: PLC0415 - DDS, an extra that bags and ROS 1 do not need
+
+        found.append(PublishManager(live, Ros2Node, say))
+    if options.ros1:
+        found.append(PublishManager(live, Ros1Node, say))
+    if options.rosbag is not None:
+        found.append(BagManager(live, Generation(options.rosbag), say))
+    return found

@@ -1,0 +1,261 @@
+"""Messages of sensors: images with camera matrices, point clouds of lidars and radars, GNSS, IMU, contacts, lanes.
+
+Layouts are those of the official ros-bridge (carla_ros_bridge, master of July 2022), so that its users find the same
+fields. A measurement is a ``carla.SensorData`` or anything with the same fields.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from basu_ros import frames
+from basu_ros.types import Generation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from basu_ros.moment import Mount
+    from basu_ros.types import Types
+
+Part = tuple[str, Any]  # behind the sensor's topic, and a message
+
+FLOAT32, UINT32 = 7, 6  # sensor_msgs/PointField
+LIDAR_POINT = (("x", 0, FLOAT32), ("y", 4, FLOAT32), ("z", 8, FLOAT32), ("intensity", 12, FLOAT32))
+SEMANTIC_POINT = (
+    *LIDAR_POINT[:3], ("CosAngle", 12, FLOAT32), ("ObjIdx", 16, UINT32), ("ObjTag", 20, UINT32),
+)  # fmt: skip
+RADAR_POINT = (
+    *LIDAR_POINT[:3], ("Range", 12, FLOAT32), ("Velocity", 16, FLOAT32), ("AzimuthAngle", 20, FLOAT32),
+    ("ElevationAngle", 28, FLOAT32),
+)  # fmt: skip
+RADAR_STEP = 32  # the ros-bridge leaves bytes 24 to 27 empty
+SEMANTIC_ROW = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("cos", "<f4"), ("index", "<u4"), ("tag", "<u4")])
+CONVERTED_ROWS = 16
+"""Rows of a depth picture at a time: what is computed in between stays in the processor's cache."""
+FARTHEST_M = 1000.0  # of CARLA's depth camera: 24 bits over 1 km, CARLA's documentation of sensor.camera.depth
+CITYSCAPES = np.array(
+    [
+        (0, 0, 0), (128, 64, 128), (244, 35, 232), (70, 70, 70), (102, 102, 156), (190, 153, 153), (153, 153, 153),
+        (250, 170, 30), (220, 220, 0), (107, 142, 35), (152, 251, 152), (70, 130, 180), (220, 20, 60), (255, 0, 0),
+        (0, 0, 142), (0, 0, 70), (0, 60, 100), (0, 80, 100), (0, 0, 230), (119, 11, 32), (110, 190, 160),
+        (170, 120, 50), (55, 90, 80), (45, 60, 150), (157, 234, 50), (81, 0, 81), (150, 100, 100), (230, 150, 140),
+        (180, 165, 180),
+    ],
+    dtype=np.uint8,
+)  # fmt: skip
+"""Red, green, blue of each semantic tag: CARLA's documentation of the semantic segmentation camera, 0.9.16."""
+
+
+def sensor_messages(types: Types, header: Any, mount: Mount, data: Any) -> list[Part]:  # noqa: ANN401 - see above
+    """Return the messages of one measurement, each with what follows its sensor's topic; none for an unknown sensor."""
+    if mount.type_id in _PICTURES:
+        return _pictures(types, header, mount, data)
+    make = _SENSORS.get(mount.type_id)
+    return [] if make is None else [("", make(types, header, data))]
+
+
+def sensor_types(type_id: str) -> list[tuple[str, str]]:
+    """Return what follows the topic of a sensor of CARLA's type, and the message type, for each of its topics."""
+    if type_id in _PICTURES:
+        return [("/image", "sensor_msgs/msg/Image"), ("/camera_info", "sensor_msgs/msg/CameraInfo")]
+    return [("", _TYPES[type_id])] if type_id in _TYPES else []
+
+
+def camera_info(types: Types, header: Any, width: int, height: int, fov_deg: float) -> Any:  # noqa: ANN401 - a message
+    """Return the matrix of a camera without distortion; the field of view is horizontal."""
+    focal, middle_x, middle_y = frames.focal_length_px(width, fov_deg), width / 2.0, height / 2.0
+    matrices = {
+        "d": np.zeros(5),
+        "k": np.array([focal, 0.0, middle_x, 0.0, focal, middle_y, 0.0, 0.0, 1.0]),
+        "r": np.eye(3).ravel(),
+        "p": np.array([focal, 0.0, middle_x, 0.0, 0.0, focal, middle_y, 0.0, 0.0, 0.0, 1.0, 0.0]),
+    }
+    if types.generation is Generation.ROS_1:
+        matrices = {name.upper(): matrix for name, matrix in matrices.items()}
+    return types.message(
+        "sensor_msgs/msg/CameraInfo",
+        header=header,
+        width=width,
+        height=height,
+        distortion_model="plumb_bob",
+        **matrices,
+    )
+
+
+def cloud(
+    types: Types,
+    header: Any,  # noqa: ANN401 - a message
+    layout: tuple[tuple[str, int, int], ...],
+    rows: NDArray[Any],
+    *,
+    step: int,
+) -> Any:  # noqa: ANN401 - a message
+    """Return a point cloud of rows that already have ROS's axes; ``layout`` gives name, byte and kind of each field."""
+    fields = [
+        types.message("sensor_msgs/msg/PointField", name=name, offset=offset, datatype=kind, count=1)
+        for name, offset, kind in layout
+    ]
+    return types.message(
+        "sensor_msgs/msg/PointCloud2",
+        header=header,
+        height=1,
+        width=len(rows),
+        fields=fields,
+        point_step=step,
+        row_step=step * len(rows),
+        data=rows.reshape(-1).view(np.uint8),
+    )
+
+
+def _pictures(types: Types, header: Any, mount: Mount, data: Any) -> list[Part]:  # noqa: ANN401 - as above
+    """An image and its camera's matrix."""
+    encoding, convert = _PICTURES[mount.type_id]
+    raw = np.frombuffer(data.raw_data, np.uint8).reshape(data.height, data.width, 4)
+    pixels = np.ascontiguousarray(convert(raw)).reshape(-1).view(np.uint8)
+    image = types.message(
+        "sensor_msgs/msg/Image",
+        header=header,
+        height=data.height,
+        width=data.width,
+        encoding=encoding,
+        step=4 * data.width,
+        data=pixels,
+    )
+    return [("/image", image), ("/camera_info", camera_info(types, header, data.width, data.height, data.fov))]
+
+
+def _depth_m(bgra: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """(H, W) depth in m of a raw picture: red is the lowest byte of 24."""
+    depth = np.empty(bgra.shape[:2], dtype=np.float32)
+    for first in range(0, len(bgra), CONVERTED_ROWS):
+        packed = bgra[first : first + CONVERTED_ROWS].view("<u4")[..., 0]
+        value = (packed >> 16 & 0xFF) | (packed & 0xFF00) | (packed & 0xFF) << 16
+        depth[first : first + CONVERTED_ROWS] = value.astype(np.float32) * np.float32(FARTHEST_M / (256**3 - 1))
+    return depth
+
+
+def _coloured(bgra: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """(H, W) packed pixels in the colours of Cityscapes; the raw picture's tag is in red, an unknown tag is black."""
+    table = np.zeros((256, 4), dtype=np.uint8)
+    table[: len(CITYSCAPES), :3] = CITYSCAPES[:, ::-1]
+    table[:, 3] = 255
+    packed: NDArray[np.uint32] = np.take(table.view("<u4")[:, 0], bgra[..., 2])
+    return packed
+
+
+def _as_is(bgra: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return bgra
+
+
+_PICTURES: dict[str, tuple[str, Callable[[NDArray[np.uint8]], NDArray[Any]]]] = {
+    "sensor.camera.rgb": ("bgra8", _as_is),
+    "sensor.camera.depth": ("32FC1", _depth_m),
+    "sensor.camera.semantic_segmentation": ("bgra8", _coloured),
+    "sensor.camera.instance_segmentation": ("bgra8", _as_is),
+    "sensor.camera.normals": ("bgra8", _as_is),
+}
+
+
+def _lidar(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    rows = np.frombuffer(data.raw_data, np.float32).reshape(-1, 4)
+    return cloud(types, header, LIDAR_POINT, frames.points(rows), step=16)
+
+
+def _semantic_lidar(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    rows = np.frombuffer(data.raw_data, SEMANTIC_ROW)
+    return cloud(types, header, SEMANTIC_POINT, frames.points(rows), step=SEMANTIC_ROW.itemsize)
+
+
+def _radar(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    """A radar's detections, on the wire velocity, azimuth, altitude and depth (RadarData.h), as points."""
+    raw = np.frombuffer(data.raw_data, np.float32).reshape(-1, 4)
+    velocity, azimuth, altitude, depth = raw.T
+    rows = np.zeros((len(raw), RADAR_STEP // 4), dtype=np.float32)
+    rows[:, 0] = depth * np.cos(azimuth) * np.cos(altitude)
+    rows[:, 1] = -depth * np.sin(azimuth) * np.cos(altitude)
+    rows[:, 2] = depth * np.sin(altitude)
+    for column, values in ((3, depth), (4, velocity), (5, azimuth), (7, altitude)):
+        rows[:, column] = values
+    return cloud(types, header, RADAR_POINT, rows, step=RADAR_STEP)
+
+
+def _gnss(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    place = {name: getattr(data, name) for name in ("latitude", "longitude", "altitude")}
+    return types.message("sensor_msgs/msg/NavSatFix", header=header, **place)
+
+
+def _imu(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    """An IMU: rates and acceleration of its own frame, attitude of its frame in the world."""
+    turn = data.transform.rotation
+    angles = np.radians((turn.roll, turn.pitch, turn.yaw)).tolist()
+    spin, force = data.gyroscope, data.accelerometer
+    return types.message(
+        "sensor_msgs/msg/Imu",
+        header=header,
+        orientation=quaternion(types, frames.attitude(*angles)),
+        angular_velocity=vector3(types, frames.axial(spin.x, spin.y, spin.z)),
+        linear_acceleration=vector3(types, frames.vector(force.x, force.y, force.z)),
+    )
+
+
+def _collision(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    push, other = data.normal_impulse, data.other_actor
+    return collision_message(types, header, 0 if other is None else other.id, (push.x, push.y, push.z))
+
+
+def collision_message(types: Types, header: Any, other_id: int, impulse_ns: frames.Vector) -> Any:  # noqa: ANN401
+    """Return a contact; the impulse in CARLA's axes becomes one in ROS's. The ros-bridge leaves CARLA's there."""
+    impulse = vector3(types, frames.vector(*impulse_ns))
+    kind = "carla_msgs/msg/CarlaCollisionEvent"
+    return types.message(kind, header=header, other_actor_id=other_id, normal_impulse=impulse)
+
+
+def _lane_invasion(types: Types, header: Any, data: Any) -> Any:  # noqa: ANN401 - as above
+    return lane_invasion_message(types, header, [int(marking.type) for marking in data.crossed_lane_markings])
+
+
+def lane_invasion_message(types: Types, header: Any, kinds: list[int]) -> Any:  # noqa: ANN401 - a message
+    """Return crossed markings, each a value of carla.LaneMarkingType."""
+    crossed = np.array(kinds, dtype=np.int32)
+    return types.message("carla_msgs/msg/CarlaLaneInvasionEvent", header=header, crossed_lane_markings=crossed)
+
+
+MARKINGS = {
+    "Other": 0, "Broken": 1, "Solid": 2, "SolidSolid": 3, "SolidBroken": 4, "BrokenSolid": 5, "BrokenBroken": 6,
+    "BottsDots": 7, "Grass": 8, "Curb": 9, "NONE": 10,
+}  # fmt: skip
+"""The value of each carla.LaneMarkingType by its name: road/element/LaneMarking.h of LibCarla 0.9.16."""
+
+
+def vector3(types: Types, xyz: frames.Vector, kind: str = "Vector3") -> Any:  # noqa: ANN401 - a message
+    """Return a geometry_msgs/Vector3, or a Point."""
+    return types.message(f"geometry_msgs/msg/{kind}", x=xyz[0], y=xyz[1], z=xyz[2])
+
+
+def quaternion(types: Types, turn: frames.Quaternion) -> Any:  # noqa: ANN401 - a message
+    """Return a geometry_msgs/Quaternion."""
+    return types.message("geometry_msgs/msg/Quaternion", x=turn[0], y=turn[1], z=turn[2], w=turn[3])
+
+
+_SENSORS: dict[str, Callable[[Types, Any, Any], Any]] = {
+    "sensor.lidar.ray_cast": _lidar,
+    "sensor.lidar.ray_cast_semantic": _semantic_lidar,
+    "sensor.other.radar": _radar,
+    "sensor.other.gnss": _gnss,
+    "sensor.other.imu": _imu,
+    "sensor.other.collision": _collision,
+    "sensor.other.lane_invasion": _lane_invasion,
+}
+_TYPES = {
+    "sensor.lidar.ray_cast": "sensor_msgs/msg/PointCloud2",
+    "sensor.lidar.ray_cast_semantic": "sensor_msgs/msg/PointCloud2",
+    "sensor.other.radar": "sensor_msgs/msg/PointCloud2",
+    "sensor.other.gnss": "sensor_msgs/msg/NavSatFix",
+    "sensor.other.imu": "sensor_msgs/msg/Imu",
+    "sensor.other.collision": "carla_msgs/msg/CarlaCollisionEvent",
+    "sensor.other.lane_invasion": "carla_msgs/msg/CarlaLaneInvasionEvent",
+}

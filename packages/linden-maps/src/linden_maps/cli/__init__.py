@@ -1,0 +1,1 @@
+"""The commands ``linden map``, a plugin of the command line of ``linden``."""

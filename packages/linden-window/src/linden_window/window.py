@@ -1,0 +1,113 @@
+"""`Window`: the hub, the page server and the scene of one window, in the process of the pages."""
+
+import asyncio
+import gzip
+import json
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from linden.errors import UserError
+from linden.maps.cache import MapCache
+from linden_window.hub import Hub
+from linden_window.models import Models, gait
+from linden_window.page_server import PageServer
+from linden_window.scene import MapText, Scene, is_kept, scene_of
+
+log = logging.getLogger("linden")
+
+CONTROLS = frozenset({"pause", "step", "speed", "spawn", "destroy", "weather"})
+"""Orders that change the world; pages may give them only if the window was started for it."""
+
+
+class Window:
+    """Takes notes and frames from a source, and orders from pages."""
+
+    def __init__(self, order: Callable[[dict[str, Any]], None], *, may_control: bool) -> None:
+        """``order`` sends orders to the source."""
+        self._to_source, self._may_control = order, may_control
+        self._hub = Hub()
+        self._server = PageServer(self._hub, self._found, self._ordered)
+        self._cache = MapCache.of_user()
+        self._models = Models()
+        self._scene: Scene | None = None
+        self._scene_number = 0
+        self._records: dict[str, bytes] = {}
+        self._work: set[asyncio.Task[None]] = set()
+
+    async def start(self, host: str, port: int) -> str:
+        """Open the port and return the page's address.
+
+        Raises:
+            OSError: the port is taken.
+        """
+        return await self._server.start(host, port)
+
+    async def close(self) -> None:
+        """Close the port and all pages."""
+        await self._server.close()
+
+    def frame(self, packed: bytes) -> None:
+        """Send a frame of the server to all open pages."""
+        self._hub.frame(packed)
+
+    def note(self, facts: dict[str, Any]) -> None:
+        """Pass on facts; a map is made a scene first, in the background."""
+        if facts.get("type") != "map":
+            self._hub.note(facts)
+            return
+        self._scene_number += 1
+        self._scene = None
+        world = MapText(facts["name"], facts["text"])
+        self._say_scene(world.name, is_ready=False, is_kept=is_kept(world, self._cache))
+        task = asyncio.create_task(self._make_scene(world, self._scene_number))
+        self._work.add(task)
+        task.add_done_callback(self._work.discard)
+
+    def keep(self, name: str, content: bytes) -> None:
+        """Keep a compressed file that pages can fetch as ``record/NAME``."""
+        self._records[name] = content
+
+    def end(self) -> None:
+        """Say in all pages that the source has ended."""
+        self._hub.note(
+            {
+                "type": "end",
+                "text": "The program that this page shows has ended. Start it again, and open its new address.",
+            }
+        )
+
+    async def _make_scene(self, world: MapText, number: int) -> None:
+        try:
+            scene = await asyncio.to_thread(scene_of, world, self._cache)
+        except UserError as error:
+            scene = Scene(world.name, {}, {"tiles": [], "error": f"The map has no scenery: {error}"})
+        if number == self._scene_number:
+            self._scene = scene
+            self._say_scene(world.name, is_ready=True, is_kept=True)
+
+    def _say_scene(self, name: str, *, is_ready: bool, is_kept: bool) -> None:
+        note = {"type": "scene", "map": name, "number": self._scene_number, "ready": is_ready, "kept": is_kept}
+        self._hub.note(note | {"control": self._may_control} | (self._scene.index if self._scene else {}))
+
+    def _found(self, path: str, query: dict[str, str]) -> bytes | None:
+        """Return a tile, a model or a record."""
+        place, _, rest = path.partition("/")
+        if place == "model":
+            if rest == "gait.json":
+                return gzip.compress(json.dumps(gait()).encode())
+            return self._models.file(rest.removesuffix(".glb"), query.get("choice", ""))
+        if place == "record":
+            return self._records.get(rest)
+        number, _, name = rest.partition("/")
+        scene = self._scene
+        return scene.tiles.get(name) if scene is not None and number == str(self._scene_number) else None
+
+    def _ordered(self, order: dict[str, Any]) -> None:
+        """Pass an order on to the source, unless it would change the world and pages may not."""
+        if order["order"] in CONTROLS and not self._may_control:
+            self._hub.note(
+                {"type": "says", "text": "This window only watches; add --window-control to change the world."}
+            )
+            return
+        self._to_source(order)
