@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from basu.metrics.registry import built_in
 from basu.metrics.success import not_exercised
 from basu.output.report.tracks import track_of
 
@@ -17,13 +18,10 @@ if TYPE_CHECKING:
 
     from basu.metrics.result import Result
 
-COMPARED = ("driving", "route_completion", "infraction_penalty")  # of each version of the leaderboard
-
 
 def row_of(result: Result) -> dict[str, Any]:
     """Return what tables keep of a drive: where it was, how it ended, scores, metrics, and the verdict of its case."""
     meta, case, status = result.meta, result.case, result.outcome.status
-    reported, leaderboard = result.metrics.get("reported") or {}, result.metrics.get("leaderboard") or {}
     row = {
         "route": meta.get("route"),
         "seed": meta.get("seed"),
@@ -36,16 +34,15 @@ def row_of(result: Result) -> dict[str, Any]:
         "severity": severity(result),
         "not_exercised": not_exercised(result.scenarios if case is None else [case]),
         "scores": None if result.scores is None else result.scores._asdict(),
-        "leaderboard": {version: {name: scores[name] for name in COMPARED} for version, scores in leaderboard.items()},
         "infractions": dict(sorted(Counter(found.kind.value for found in result.infractions).items())),
         "metrics": dict(result.metrics),
         "own": {name: own.value for name, own in result.own.items()},
-        "driven_m": reported.get("driven_m", 0.0),
-        "planned_m": reported.get("planned_m"),
         "margins": {},
         "simulated_s": float(meta.get("simulated_s", 0.0)),
         "wall_s": float(meta.get("wall_s", 0.0)),
     }
+    for metric in built_in():
+        row |= metric.series(result.metrics.get(metric.name))
     if case is not None:
         judged = ("verdict", "fault", "message", "assessment", "collisions", "margins", "simulated_s", "wall_s")
         row |= {name: case[name] for name in judged}

@@ -6,8 +6,9 @@ import statistics
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from basu.metrics.leaderboard.scores import COMPARED
 from basu.output.report.document_parts import SeriesRow
-from basu.output.report.drive_row import COMPARED, part_of, row_of
+from basu.output.report.drive_row import part_of, row_of
 from basu.output.report.tracks import ON_OWN_ROUTE
 
 if TYPE_CHECKING:
