@@ -1,8 +1,8 @@
 """`SingleRuns`: the runs of one command without a series, which go on after the command was killed.
 
-While they last, a hidden folder beside their own folders holds the drafts and ``runs.json``: the name of each run's
-folder, and which runs are done. The folder is named after all that the results depend on, so the same command with
-``--resume`` finds it. A drive that was under way has nothing that could go on: it begins again, under the same name.
+While they last, a hidden folder beside their own folders holds the drafts and ``runs.json``. That file has the name of
+each run's folder, and which runs are done. The name of the hidden folder is a digest of what the results depend on, so
+the same command with ``--resume`` finds it. A drive that was under way begins again, under the same name.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class SingleRuns(Batch):
 
     @property
     def done(self) -> frozenset[int]:
-        """The numbers of the runs that count and whose folders are there."""
+        """The numbers of the runs that count and have a folder."""
         there = self._document["done"].items()
         return frozenset(int(number) for number, name in there if (self.folder / name / RESULT_FILE).exists())
 
