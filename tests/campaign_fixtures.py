@@ -17,12 +17,12 @@ from basu.jobs.job import Answer, PlayerSpec, Ready, versions
 PLAYER = """
 import contextlib, io, json, math, os, signal, tarfile, time
 from pathlib import Path
-from typing import Any, NamedTuple
-from basu.jobs.job import Played, PlayerSpec, versions
-
-class DriveDone(NamedTuple):  # as the one of basu.campaigns.player, which imports all of a drive
-    row: dict[str, Any]
-    records: bytes | None
+from basu.jobs.job import Played, PlayerSpec
+from basu.metrics.result import Result
+from basu.metrics.score import Scores
+from basu.metrics.success import Success
+from basu.outcome import Outcome, Status
+from basu.running.drive import DriveDone
 
 def spec(settings):
     return PlayerSpec(f"{__name__}:open_player", ())
@@ -51,14 +51,22 @@ def play(job):
         away = math.hypot(shares[0] - 0.4, shares[1] - 0.55)
         success = away > (0.35 if job["agent_name"] == "blind" else 0.25)
         share = 1.0 / (1.0 + away)
-    row = {
-        "status": "ScenarioEnded", "fault": "none", "message": "computed", "judged": True, "success": success,
-        "severity": 1.0 if not success else share, "driving_score": share, "passengers_comfort_score": share / 2.0,
-        "margin_distance_m": 10.0 * share, "simulated_s": 20.0, "wall_s": time.perf_counter(), "cpu_s": 1.0,
-        "memory_mb": 500.0, "records_bytes": 1000, "host": "here", "worker": os.getpid(),
-        **{f"version_{name}": text for name, text in versions().items()},
+    margins = {"distance_m": 1.0 / max(share, 1e-6) - 1.0, "ttc_s": None, "pet_s": None}  # 1/(1 + margin) is the share
+    case = {
+        "verdict": "SUCCESS" if success else "FAILURE", "fault": "none", "message": "computed", "assessment": None,
+        "collisions": [], "margins": margins, "simulated_s": 20.0, "wall_s": 1.0,
     }
-    return Played(DriveDone(row, tar() if not success or share > job["bar"] else None))
+    result = Result(
+        outcome=Outcome(Status.SCENARIO_ENDED, "computed"), scores=Scores(share, 1.0, share), infractions=(),
+        metrics={"passengers": {"comfort": {"score": share / 2.0}}}, scoring={}, meta={}, case=case,
+        success=Success(success),
+    )
+    cost = {
+        "wall_s": time.perf_counter(), "cpu_s": 1.0, "memory_mb": 500.0, "records_bytes": 1000, "host": "here",
+        "worker": os.getpid(),
+    }
+    packed = tar() if not success or share > job["bar"] else None
+    return Played(DriveDone(None, result, packed=packed, cost=cost))
 """
 
 CAMPAIGN = """

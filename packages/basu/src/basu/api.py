@@ -172,15 +172,14 @@ def run(
         here = OpenWorld(prepared, opened.simulator, opened.towns, quiet=not progress)
         results = []
         for done in runs(wanted, scoring, here, prepared.jobs):
-            assert done.written is not None, "a drive in this process that cannot begin raises its error"
-            assert done.folder is not None, "likewise"
+            assert done.folder is not None, "a drive in this process that cannot begin raises its error"
             result = RunResult(done.folder)
             if progress:
                 sys.stdout.write(f"{table(result.result)}\n")
             if result.outcome.status is Status.SIMULATOR_FAILED and simulator is None:
                 _shared.close()
-            if isinstance(done.written.bug, Exception):
-                raise done.written.bug
+            if isinstance(done.bug, Exception):
+                raise done.bug
             results.append(result)
     return results[0] if len(prepared.jobs) == 1 else results
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from basu.campaigns import command
-from basu.campaigns.campaign_folder import locked
 from basu.campaigns.drive_table import read_drives
 from basu.cli import main
 from basu.jobs import pool
+from basu.running.folder_lock import locked
 from tracing import untraced
 
 Write = Callable[..., Path]
@@ -73,7 +73,7 @@ def test_a_cluster_that_is_not_there_is_one_sentence(campaign: Write, say: Say, 
 
 def test_two_runs_on_one_folder_are_one_sentence(campaign: Write, say: Say, tmp_path: Path) -> None:
     with locked(tmp_path / "campaigns" / "crossings"):
-        assert "another command drives the campaign" in say(campaign())
+        assert "another command drives in" in say(campaign())
     assert drove_nothing(tmp_path)
 
 

@@ -1,8 +1,10 @@
 """Claims about campaigns as a whole, with a player that computes rows: nothing is lost or counted twice."""
 
 import importlib
+import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,16 +16,17 @@ from typing import Any
 import pyarrow as pa
 import pytest
 
-from basu.campaigns import command
-from basu.campaigns.campaign_folder import is_locked, locked
+from basu.campaigns import command, planning
 from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
 from basu.campaigns.command import describe, run_campaign
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.records import kept_in
 from basu.campaigns.report import write_campaign_report
+from basu.campaigns.settings import read_campaign
 from basu.campaigns.status import status
 from basu.errors import UserError
+from basu.running.folder_lock import is_locked, locked
 from ray_clusters import connected_cluster
 
 Write = Callable[..., Path]
@@ -104,6 +107,36 @@ def test_a_campaign_goes_on_and_equals_an_undisturbed_one(run: Callable[..., Pat
     assert "stopped" in status(part)
     run(file, "part", resume=True)
     assert steady(part).equals(steady(run(file)))
+
+
+@pytest.mark.usefixtures("here")
+def test_a_folder_that_an_earlier_version_left_is_read_and_goes_on(
+    run: Callable[..., Path], campaign: Write, tmp_path: Path
+) -> None:
+    """The folder is one of version 0.1.0 before campaigns were batches: 2 of 4 drives, real ones."""
+    folder = tmp_path / "campaigns" / "crossings"
+    shutil.copytree(Path(__file__).with_name("campaign_of_version_1"), folder)
+    assert "2 of 4" in status(folder)
+    file = campaign(
+        ('["basic", "blind"]', '["basic"]'), ("number = 3", "number = 1"), ("sweep = 10", "sweep = 4"), ("= 8", "= 64")
+    )
+    document = json.loads((folder / "campaign.json").read_text())
+    begun(folder, file, {**document["identity"], "the version of basu": "0.0"})
+    with pytest.raises(UserError, match=r'begun differently: .*the version of basu was "0\.0" and is'):
+        run(file, resume=True)
+    begun(folder, file, {})  # as if this version had been installed then: the drives of both can stand side by side
+    run(file, resume=True)
+    rows = read_drives(folder).to_pylist()
+    assert [row["message"] == "computed" for row in rows] == [False, False, True, True]
+    assert [row["host"] for row in rows] == ["earlier", "earlier", "here", "here"]
+    assert "Success" in write_campaign_report(folder).read_text(encoding="utf-8")
+
+
+def begun(folder: Path, file: Path, identity: dict[str, Any]) -> None:
+    """Let a campaign have been begun under the conditions of ``identity``; where there is none, of the present."""
+    path = folder / "campaign.json"
+    present = planning.plan_of(read_campaign(file), file).identity()
+    path.write_text(json.dumps({**json.loads(path.read_text()), "identity": {**present, **identity}}))
 
 
 @pytest.mark.usefixtures("here")

@@ -37,7 +37,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
         (["run", "basic", "--routes", "routes/linden_short.xml", "--route-id", "9"], "has no route '9'"),
         (["run", "basic", "--routes", "routes/linden_short.xml", "--routes-subset", "1,7"], "has no '7'; it has 1"),
         (["run", "basic", "--weather", "Sunny"], "there is no weather called 'Sunny'; there are"),
-        (["run", "basic", "--resume"], "--resume continues a series; name it with --series"),
+        (["run", "basic", "--resume", "--output", "nowhere"], "nothing in nowhere was begun with these options"),
         (["run", "basic", "--series", "latest"], "that name is kept for the newest run"),
         (["run", "basic", "--walkers", "-2"], "--walkers is -2; it must be 0 or more"),
         (["score", "nowhere"], "nowhere is no folder"),

@@ -2,22 +2,26 @@
 
 import json
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
+from basu.campaigns.columns import columns_of, schema_of
 from basu.cli import main
 from basu.errors import UserError
 from basu.metrics import registry
-from basu.metrics.registry import Metric, built_in, user_metrics
-from basu.metrics.result import Result, judge
+from basu.metrics.registry import Drive, JudgedRun, Metric, Moment, built_in, user_metrics
+from basu.metrics.result import Result, judge, result_schema
+from basu.metrics.stretches import spans
 from basu.outcome import Outcome, Status
 from basu.output.report.comparison import rows, text
 from basu.output.report.console import table
 from basu.output.report.documents import RESULT_SCHEMA, mistakes, read_schema
 from basu.output.report.html.page import report
+from basu.records.history import History
 from fakes.drives import at, driven, ramp
 from fakes.results import META
 from fakes.run_records import record
@@ -71,6 +75,59 @@ def test_console_report_and_comparison_show_them(own_file: Path) -> None:
     assert "brake" in told[0]
     assert "2.0 s" in told[3]
     assert told[4].count("\u2013") == 2  # the other run has none of the two
+    assert {name: value for name, value in columns_of(found, user_metrics([own_file])).items() if "own_" in name} == {
+        "own_brake_time": pytest.approx(2.0), "own_too_lively": 1,
+    }  # fmt: skip
+
+
+class BrakeTime(Metric):
+    """All that is written for one more metric of BASU's own."""
+
+    name = "time_on_the_brake"
+    title = "time on the brake"
+    unit = "s"
+    digits = 1
+    timeline_row = "brake"
+
+    def compute(self, drive: Drive) -> float:
+        return float((drive.history.frames["applied_brake"] > 0.1).sum() * drive.history.facts.step_s)
+
+    def moments(self, result: JudgedRun, history: History) -> list[Moment]:
+        return spans(history, history.frames["applied_brake"] > 0.1, "braked", "standing")
+
+
+@pytest.fixture
+def one_more(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """One more metric of BASU's own, as `register` enters it."""
+    monkeypatch.setattr(registry, "_BUILT_IN", dict(registry._BUILT_IN))
+    built_in.cache_clear()
+    registry.register(BrakeTime)
+    yield
+    monkeypatch.undo()
+    built_in.cache_clear()
+
+
+@pytest.mark.usefixtures("one_more")
+def test_a_class_is_all_that_a_metric_of_our_own_needs() -> None:
+    """It stands in result, schema, console, page with timeline, comparison and the columns of a campaign."""
+    history = driven([*at(4.0, 5.0), *ramp(4.0, 8.0, 4.0), *at(8.0, 5.0)])
+    history.frames["applied_brake"][20:60] = 0.3
+    found = judge(DONE, history, meta=META)
+    document = json.loads(json.dumps(found.document()))
+    assert document["time_on_the_brake"] == pytest.approx(2.0)
+    assert list(mistakes(document, result_schema())) == []
+    assert "time on the brake 2.0 s" in table(found)
+    run = replace(record(history), result=found)
+    page = report(run).decode()
+    assert re.search(r"time on the brake</th><td>2\.0 s", page)
+    assert re.search(
+        r">brake</span><div class=\"row timed\"><i class=\"span standing\" title=\"braked from 1\.0 s", page
+    )
+    told = text(rows([run])).splitlines()
+    assert "brake" in told[1]
+    assert "2.0 s" in told[3]
+    assert columns_of(found)["time_on_the_brake"] == pytest.approx(2.0)
+    assert "time_on_the_brake" in schema_of({}).names
 
 
 def test_they_judge_an_earlier_run_anew(own_file: Path, capsys: pytest.CaptureFixture[str]) -> None:

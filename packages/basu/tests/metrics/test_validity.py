@@ -192,10 +192,10 @@ def test_the_driven_distance_is_what_was_driven() -> None:
     """A drive of 53.8 m away from the route is not 1 m long, and rates for each km are of what was driven."""
     way = [(0, 0), (1, 0), (1, 25.0), (3, 25.0), (3, -1.8)]
     history = along(straight_route(controls=(stop_sign(2.0),)), way, speed_mps=6.0)
-    document = judge(Outcome(Status.ROUTE_DEVIATION, "left the route"), history, meta=META).document()
-    driven_m = document["reported"]["driven_m"]
+    result = judge(Outcome(Status.ROUTE_DEVIATION, "left the route"), history, meta=META)
+    driven_m = result.metrics["reported"]["driven_m"]
     assert driven_m == pytest.approx(54.8, abs=1.0)
-    assert document["reported"]["route_completion"] < 0.02
-    total = totals([series_row(document, number=0, repetition=0, folder="run")], 1)
+    assert result.metrics["reported"]["route_completion"] < 0.02
+    total = totals([series_row(result, number=0, repetition=0, folder="run")], 1)
     assert total["driven_km"] == pytest.approx(driven_m / 1000.0)
     assert total["infractions"]["stop_sign"] == {"number": 1, "per_km": pytest.approx(1000.0 / driven_m)}

@@ -93,13 +93,13 @@ def test_a_campaign_ignores_what_an_agent_asks_of_route_vehicle_and_weather(
         sample=0.0,
         scratch=None,
     )
-    player = _Player(settings, {str(path): find_agent(str(path))}, open_library(()), (), at_server, tmp_path)
+    player = _Player(settings, {str(path): find_agent(str(path))}, open_library(()), at_server, tmp_path)
     job = {"id": "0" * 16, "kind": "route", "agent": str(path), "track": None, "file": str(route_file)}
     others = {"identity": "piece", "seed": 0, "weather": "as given", "scenarios": False, "bar": 0.0}
     traffic = {"vehicles": 0, "walkers": 0, "density_per_km": None}
     done = player.play({**job, **others, **traffic}).value
-    assert (done.row["status"], done.row["judged"], done.row["success"]) == ("AgentCrashed", True, False)
-    with tarfile.open(fileobj=io.BytesIO(done.records)) as tar:
+    assert (done.result.outcome.status, done.result.success.passed) == (Status.AGENT_CRASHED, False)
+    with tarfile.open(fileobj=io.BytesIO(done.packed)) as tar:
         result, config = (json.load(tar.extractfile(name)) for name in ("result.json", "config.json"))  # type: ignore[arg-type]
     meta = result["meta"]
     assert (meta["route"], meta["own_route"]) == ("piece", False)

@@ -12,12 +12,13 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
+from basu.metrics.result import Result
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish
 from basu.routing.route_file import RouteDescription
-from basu.running.batch import WrittenDrive
+from basu.running.drive import DriveDone
 from basu.running.preparation import Job
 from basu.running.series import RESOLVED, Series, conditions, open_series
 from basu.settings.option import fields_of
@@ -34,18 +35,17 @@ def opened(folder: Path, *, resume: bool = False, given: dict[str, Any] | None =
     return open_series(folder, given or GIVEN, JOBS, "basic", resume=resume)
 
 
-def finished(
-    series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False
-) -> tuple[Path, dict[str, Any]]:
+def finished(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> DriveDone:
     """A run that is written and not yet in its place."""
     draft, document = make_draft(series.folder, series.name(job.number)), a_result(status, safe=safe)
     (draft / "result.json").write_text(json.dumps(document))
-    return draft, document
+    return DriveDone(draft, Result.from_document(document), number=job.number)
 
 
 def run(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> Path:
-    draft, document = finished(series, job, status, safe=safe)
-    return series.publish(WrittenDrive(draft, document), job.number)
+    folder = series.publish(finished(series, job, status, safe=safe)).folder
+    assert folder is not None
+    return folder
 
 
 def listed(folder: Path) -> dict[str, Any]:
@@ -93,7 +93,8 @@ def test_half_a_run_is_thrown_away(tmp_path: Path) -> None:
 
 def test_a_finished_run_that_is_not_yet_listed_is_taken_in_once(tmp_path: Path) -> None:
     series = opened(tmp_path)
-    draft, _ = finished(series, JOBS[2])
+    draft = finished(series, JOBS[2]).folder
+    assert draft is not None
     publish(draft, series.name(JOBS[2].number))  # killed here
     for _ in range(2):
         assert opened(tmp_path, resume=True).done == {2}
@@ -103,7 +104,7 @@ def test_a_finished_run_that_is_not_yet_listed_is_taken_in_once(tmp_path: Path) 
 def test_a_full_disk_loses_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     series = opened(tmp_path)
     run(series, JOBS[0])
-    draft, document = finished(series, JOBS[1])
+    second = finished(series, JOBS[1])
 
     def full(_descriptor: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -111,7 +112,7 @@ def test_a_full_disk_loses_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", full)
         with pytest.raises(UserError, match=r"series\.json .* could not be written: No space left on device"):
-            series.publish(WrittenDrive(draft, document), JOBS[1].number)
+            series.publish(second)
     assert listed(tmp_path)["totals"]["done"] == 1  # the old list, whole
     assert opened(tmp_path, resume=True).done == {0, 1}
 

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from basu.cli import main
+from basu.metrics.success import Success
 from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import RunRecord
@@ -24,7 +25,7 @@ def leaving_(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[str], RunRe
 
     def leaving(made: Callable[[str], RunRecord]) -> None:
         def drive(case: Case, options: RunOptions, *_: object) -> Path:
-            return written(options.output / case.agent, made(case.agent))
+            return written(options.output / case.row, made(case.agent))
 
         monkeypatch.setattr(thesis_experiment, "_drive", drive)
         monkeypatch.setattr(thesis_experiment, "simulator_for", lambda _: nullcontext(SimpleNamespace()))
@@ -42,7 +43,7 @@ def test_all_four_are_driven_and_stand_beside_the_thesis(
     assert "wall time" in told
     (folder,) = tmp_path.glob("experiment-thesis-*")
     assert {path.name for path in folder.iterdir()} == {
-        "basic", "deviating", "forward", "human", "compare.html", "compare.png",
+        "basic", "behavioral", "forward", "human", "compare.html", "compare.png", "experiment.json",
     }  # fmt: skip
     assert "Beside table 5.1" in (folder / "compare.html").read_text()
 
@@ -57,6 +58,32 @@ def test_a_drive_that_is_none_ends_it_with_its_own_exit_code(
 
     leaving(failed)
     assert main(["experiment", "thesis", "--output", str(tmp_path)]) == code
+
+
+def test_it_goes_on_with_the_drives_that_are_missing(
+    tmp_path: Path, leaving: Callable[[Callable[[str], RunRecord]], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    driven: list[str] = []
+
+    def third_is_interrupted(agent: str) -> RunRecord:
+        driven.append(agent)
+        run = record(crashing(), agent=agent)
+        ended = Outcome(Status.INTERRUPTED, "by the user")
+        result = replace(run.result, outcome=ended, success=Success(None))
+        return replace(run, result=result) if len(driven) == 3 else run
+
+    leaving(third_is_interrupted)
+    assert main(["experiment", "thesis", "--output", str(tmp_path)]) == 130
+    (folder,) = tmp_path.glob("experiment-thesis-*")
+    assert main(["experiment", "thesis", "--resume", str(folder), "--seed", "1"]) == 2
+    assert "was begun differently: --seed was 0 and is 1" in capsys.readouterr().err
+    assert main(["experiment", "thesis", "--resume", str(folder)]) == 0
+    assert driven == ["basic", "deviating", "forward", "forward", "human"]
+    assert {path.name for path in folder.iterdir() if path.is_dir()} == {
+        "basic", "behavioral", "forward", "forward-Interrupted", "human",
+    }  # fmt: skip
+    assert main(["experiment", "thesis", "--resume", str(tmp_path)]) == 2
+    assert "is no folder of an experiment that can go on" in capsys.readouterr().err
 
 
 def test_it_drives_in_a_simulator_that_runs_already(

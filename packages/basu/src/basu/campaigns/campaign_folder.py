@@ -1,11 +1,8 @@
-"""The folder of a campaign: its file names, its lock, and `campaign.json`, written at the start, compared on resume."""
+"""The folder of a campaign: its file names, and `campaign.json`, written at the start, compared on resume."""
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import json
-import os
 import shutil
 from typing import TYPE_CHECKING, Any
 
@@ -13,76 +10,13 @@ from basu.campaigns.plan import CampaignPlan
 from basu.errors import UserError
 from basu.files import read_json
 from basu.output.report.documents import write_json
-from basu.running.series import changes
+from basu.running.batch import changes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
-CAMPAIGN_FILE, PROGRESS_FILE, STOP_FILE, LOCK_FILE, SCRATCH = (
-    "campaign.json",
-    "progress.json",
-    "stopped.json",
-    ".lock",
-    "scratch",
-)
+CAMPAIGN_FILE, PROGRESS_FILE, STOP_FILE, SCRATCH = "campaign.json", "progress.json", "stopped.json", "scratch"
 SCHEMA_VERSION = 1
-
-
-@contextlib.contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder; the system releases it when this process ends, however that goes.
-
-    Folders that were made for the lock go again where nothing was written into them: the campaign was refused.
-
-    Raises:
-        UserError: another command holds it, or the folder cannot be made.
-    """
-    made = [each for each in (folder, *folder.parents) if not each.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-    except OSError as error:
-        raise UserError(f"{folder} cannot be used: {error.strerror}; name another place with --output") from error
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if os.fstat(descriptor).st_nlink == 0:  # a command that was refused has removed it since it was opened
-            raise BlockingIOError
-    except OSError:
-        os.close(descriptor)
-        raise UserError(
-            f"another command drives the campaign in {folder} now; wait for it, or name another place with --output"
-        ) from None
-    try:
-        yield
-    finally:
-        if made and [path.name for path in folder.iterdir()] == [LOCK_FILE]:
-            _remove(folder / LOCK_FILE, made)
-        os.close(descriptor)
-
-
-def _remove(lock: Path, folders: list[Path]) -> None:
-    """Remove the lock and the folders around it that hold nothing else, the innermost first."""
-    with contextlib.suppress(OSError):  # another command has begun to use one of them
-        lock.unlink()
-        for folder in folders:
-            folder.rmdir()
-
-
-def is_locked(folder: Path) -> bool:
-    """Whether a command drives the campaign now."""
-    try:
-        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    else:
-        return False
-    finally:
-        os.close(descriptor)
 
 
 def begin(folder: Path, plan: CampaignPlan, source: Path, *, resume: bool) -> None:

@@ -1,4 +1,4 @@
-"""`CampaignRun`: sends jobs to the worker pool, stores rows and records, writes progress, applies the stopping rule."""
+"""`CampaignRun`: the batch of a campaign, which keeps rows and the telling folders, and stops by a rule."""
 
 from __future__ import annotations
 
@@ -10,24 +10,26 @@ from typing import TYPE_CHECKING, Any
 from tqdm import tqdm
 
 from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE
+from basu.campaigns.columns import columns_of
 from basu.campaigns.drive_table import DriveTable, journal_rows, open_drives
 from basu.campaigns.looks import Looks
 from basu.campaigns.records import Records
 from basu.campaigns.search_part import search_plugin
-from basu.jobs.job import Job, Lost, versions
-from basu.outcome import Fault, Status
+from basu.jobs.job import Job
+from basu.metrics.registry import user_metrics
+from basu.outcome import Fault
 from basu.output.report.documents import write_json
+from basu.running.batch import Batch
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
     from basu.campaigns.plan import CampaignPlan
-    from basu.campaigns.player import DriveDone
     from basu.campaigns.search_part import SearchStates
     from basu.campaigns.storage import Mirror
-    from basu.jobs.job import Done
     from basu.jobs.pool import Pool
+    from basu.running.drive import DriveDone
 
 PROGRESS_S = 2.0  # of wall time from one writing of the progress to the next
 
@@ -45,14 +47,16 @@ class RunSettings:
     ray: str | None = None  # the address of a Ray cluster; None: processes of this machine
 
 
-class CampaignRun:
+class CampaignRun(Batch):
     """One command at work on a campaign."""
 
     def __init__(
         self, plan: CampaignPlan, folder: Path, table: DriveTable, settings: RunSettings, mirror: Mirror | None
     ) -> None:
+        super().__init__(folder, {})  # its folders have other names, see `Records`
         self._mirror = mirror
-        self.plan, self.folder, self.table, self._settings = plan, folder, table, settings
+        self.plan, self.table, self._settings = plan, table, settings
+        self._own = user_metrics(plan.metric_files)
         self.limit = plan.size if settings.drives is None else min(plan.size, settings.drives)
         names = [agent.name for agent in plan.agents]
         self._records = Records(folder, plan.campaign.keep)
@@ -63,7 +67,7 @@ class CampaignRun:
         self._driven = 0  # by this command
         self._given: dict[int, dict[str, Any]] = {}  # jobs in work
 
-    def drive(self, pool: Pool[Any]) -> int:
+    def drive_all(self, pool: Pool[Any]) -> int:
         """Drive what is left; the exit code.
 
         Raises:
@@ -75,9 +79,7 @@ class CampaignRun:
         try:
             with bar:
                 if not self._looks.is_answered():
-                    for answer in pool.play(self._jobs()):
-                        self._take(answer)
-                        bar.update()
+                    for _ in self.play(pool.play(self._jobs()), bar):
                         bar.set_postfix_str(", ".join(f"{name} {n} failed" for name, n in self._failures.items()))
                         if self._looks.is_answered():
                             break
@@ -129,26 +131,25 @@ class CampaignRun:
         """What a job's search has chosen; None while it has not."""
         return {} if self._strands is None else self._strands.values(number)
 
-    def _take(self, answer: Done | Lost) -> None:
-        """Write the row of a drive, and its folder before that."""
-        job = self._given.pop(answer.number)
+    def publish(self, done: DriveDone) -> DriveDone:
+        """Write the row of a drive, and its folder before that; return it.
+
+        Raises:
+            UserError: the disk is full, or the store refuses it.
+        """
+        job = self._given.pop(done.number)
         row = {
-            "number": answer.number,
+            "number": done.number,
             **{name: job[name] for name in ("id", "kind", "subject", "identity", "town", "weather", "seed")},
             "agent": job["agent_name"],
             "track": job["track"],
             **{name: job[name] for name in ("vehicles", "walkers", "density_per_km")},
             **{f"parameter_{name}": value for name, value in job["parameters"].items()},
-            "attempts": answer.attempts,
+            "attempts": done.attempts,
+            **columns_of(done.result, self._own),
+            **done.cost,
         }
-        packed = None
-        if isinstance(answer, Lost):
-            row |= lost_row(answer.sentence)
-        else:
-            done: DriveDone = answer.value
-            row |= done.row
-            packed = done.records
-        self._records.offer(row, packed)
+        self._records.offer(row, done.packed)
         block = self.table.add(row)
         self._count(row)
         if block is not None:
@@ -157,6 +158,7 @@ class CampaignRun:
                 self._mirror.copy()
         self._driven += 1
         self._progress()
+        return done
 
     def _stop(self, blocks: int) -> None:
         """Keep the rows of the blocks that answered the question, and no others: they are the same in every run."""
@@ -201,16 +203,3 @@ def _strands(plan: CampaignPlan, folder: Path) -> SearchStates | None:
     if all(part.search is None for part in plan.parts):
         return None
     return search_plugin().states(plan, folder)
-
-
-def lost_row(sentence: str) -> dict[str, Any]:
-    """The verdict of a job over which every worker died: nothing is known of the agent."""
-    return {
-        "status": Status.BENCHMARK_FAILED.value,
-        "fault": Fault.BENCHMARK.name.lower(),
-        "judged": False,
-        "success": None,
-        "message": sentence,
-        "severity": 1.0,
-        **{f"version_{name}": text for name, text in versions().items()},
-    }

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
+from basu.jobs.job import versions
 from basu.metrics.infraction import Infraction
 from basu.metrics.registry import built_in, user_metrics
+from basu.output.report.drive_row import row_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -85,9 +87,16 @@ def schema_of(parameters: Mapping[str, type], metric_files: Sequence[Path] = ())
     return pa.schema([pa.field(name, kind) for name, kind in found.items()])
 
 
-def metric_values(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
-    """The values of all metrics of a drive, by column; a column that is not among them is null."""
-    values: dict[str, Any] = {}
+def columns_of(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
+    """Return the columns of a drive that follow from its result; one that is not among them is null.
+
+    ``own`` are users' metrics.
+    """
+    row = row_of(result)
+    values = {name: row[name] for name in ("status", "fault", "message", "severity", "not_exercised", "simulated_s")}
+    values |= {"judged": row["passed"] is not None, "success": row["passed"]}
+    values |= {f"margin_{name}": value for name, value in row["margins"].items()}
+    values |= {f"version_{name}": text for name, text in versions().items()}
     if result.scores is not None:
         scores = result.scores
         values |= {
@@ -95,13 +104,11 @@ def metric_values(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
             "infraction_score": scores.infraction,
             "path_score": scores.path_following,
         }
-        kinds = [found.kind for found in result.infractions]
-        values |= {f"infractions_{kind.value}": kinds.count(kind) for kind in Infraction}
+        values |= {f"infractions_{kind.value}": row["infractions"].get(kind.value, 0) for kind in Infraction}
         for metric in built_in():
-            values |= dict(_values(metric.name, metric.schema, result.metrics.get(metric.name)))
+            values |= dict(_values(metric.name, metric.schema, row["metrics"].get(metric.name)))
         for metric in own:
-            value = result.own[metric.name].value if metric.name in result.own else None
-            values |= dict(_values(f"own_{metric.name}", metric.schema, value))
+            values |= dict(_values(f"own_{metric.name}", metric.schema, row["own"].get(metric.name)))
     return values
 
 

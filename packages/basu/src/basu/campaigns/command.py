@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from basu.campaigns.campaign_folder import CAMPAIGN_FILE, SCRATCH, begin, locked
+from basu.campaigns.campaign_folder import CAMPAIGN_FILE, SCRATCH, begin
 from basu.campaigns.campaign_run import CampaignRun, RunSettings
 from basu.campaigns.columns import schema_of
 from basu.campaigns.drive_table import DriveTable
@@ -16,6 +16,7 @@ from basu.campaigns.storage import Mirror, Store, fetch
 from basu.errors import UserError
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
+from basu.running.folder_lock import locked
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,7 +50,7 @@ def run_campaign(settings: RunSettings) -> int:
             attempts=plan.campaign.work.attempts,
             job_limit_s=plan.campaign.work.drive_limit_s,
         )
-        return run.drive(pool)
+        return run.drive_all(pool)
 
 
 def describe(file: Path) -> str:

@@ -12,11 +12,10 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
-from basu.campaigns.columns import metric_values
 from basu.campaigns.cost import cost_of
 from basu.campaigns.plan import ROUTE
 from basu.campaigns.settings import AS_GIVEN
@@ -24,11 +23,12 @@ from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.episode.failures import outcome_of
 from basu.errors import AgentError, SimulatorError, UserError
-from basu.jobs.job import After, Played, PlayerSpec, versions
+from basu.jobs.job import After, Played, PlayerSpec
 from basu.metrics.registry import user_metrics
-from basu.metrics.success import not_exercised, success
 from basu.options.run import RunOptions
 from basu.outcome import Status
+from basu.output.report.drive_row import severity
+from basu.running.drive import not_begun
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import agents_fault, new_agents, prepare
 from basu.running.scenario_runs.one_case import CaseSession, play_case
@@ -37,14 +37,13 @@ from basu.scenarios.cases import open_library
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from basu.agents.process.remote_agent import FoundAgent
     from basu.jobs.job import Play
-    from basu.metrics.registry import Metric
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
-    from basu.running.drive import WrittenDrive
+    from basu.running.drive import DriveDone
     from basu.running.preparation import Plan
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
@@ -69,13 +68,6 @@ class PlayerSettings:
     scratch: Path | None  # for folders of drives in work; None: the system's
 
 
-class DriveDone(NamedTuple):
-    """What came of a drive."""
-
-    row: dict[str, Any]  # of the table, without what the driver knows itself
-    records: bytes | None  # its folder as a tar file, where it is worth keeping
-
-
 def drive_player(settings: PlayerSettings) -> PlayerSpec:
     """The player as a value that any process can open."""
     return PlayerSpec(f"{__name__}:open_player", (settings,))
@@ -89,7 +81,8 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
         UserError: an agent, a scenario's or a metric's file cannot be used here.
         SimulatorError: there is no simulator.
     """
-    library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
+    library = open_library(settings.scenario_files)
+    user_metrics(settings.metric_files)  # a file that cannot be used here is refused before the drives
     with tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch:
         agents = {
             typed: find_agent(
@@ -102,7 +95,7 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
             for typed in settings.agents
         }
         with simulator_for(SimulatorSpec(is_open=settings.open)) as simulator:
-            driver = _Player(settings, agents, library, own, simulator, Path(scratch))
+            driver = _Player(settings, agents, library, simulator, Path(scratch))
             yield driver.play
 
 
@@ -114,54 +107,44 @@ class _Player:
         settings: PlayerSettings,
         agents: dict[str, FoundAgent],
         library: Library,
-        own: Sequence[Metric],
         simulator: Simulator,
         scratch: Path,
     ) -> None:
-        self._settings, self._agents, self._library, self._own = settings, agents, library, own
+        self._settings, self._agents, self._library = settings, agents, library
         self._simulator, self._towns, self._scratch = simulator, Towns(simulator), scratch
         self._plans: dict[tuple[str, str, str, bool], Plan] = {}
 
     def play(self, job: dict[str, Any]) -> Played:
-        """Drive one job; whatever goes wrong becomes its row."""
+        """Drive one job; whatever goes wrong becomes its result. The folder is packed where it is worth keeping."""
         began_s, before = time.perf_counter(), cost_of()
-        folder = None
         try:
             done = self._route(job) if job["kind"] == ROUTE else self._case(job)
         except (UserError, AgentError, SimulatorError) as error:
-            outcome = outcome_of(error, self._simulator.why_gone)
-            found: dict[str, Any] = {**_verdict(success(outcome, None, ()).passed, 1.0), "simulated_s": 0.0}
-        else:
-            outcome, folder, found = done.result.outcome, done.draft, row_of(done.result, self._own)
-        row = {
-            "status": outcome.status.value,
-            "fault": outcome.status.fault.name.lower(),
-            "message": outcome.message,
-            **found,
-            **{f"version_{name}": text for name, text in versions().items()},
-        }
-        records = self._records(job, row, folder)
+            done = not_begun(outcome_of(error, self._simulator.why_gone))
+        cost: dict[str, Any] = {}
+        packed = None
+        if done.folder is not None:
+            files = [path.stat().st_size for path in done.folder.rglob("*") if path.is_file()]
+            cost["records_bytes"] = sum(files)
+            packed = _tar(done.folder) if self._is_kept(job, done.result) else None
+            shutil.rmtree(done.folder)
         after = cost_of()
-        row |= {
+        cost |= {
             "wall_s": round(time.perf_counter() - began_s, 3),
             "cpu_s": round(max(0.0, after.cpu_s - before.cpu_s), 3),
             "memory_mb": round(after.memory_mb, 1),
             "host": platform.node(),
             "worker": os.getpid(),
         }
-        return Played(DriveDone(row, records), _after(outcome.status, row["success"]))
+        sent = done.to_send()._replace(folder=None, packed=packed, cost=cost)
+        return Played(sent, _after(done.result.outcome.status, done.result.success.passed))
 
-    def _records(self, job: dict[str, Any], row: dict[str, Any], folder: Path | None) -> bytes | None:
-        """The folder as a tar file where it is a failure's, one of the sample, or worse than the driver has seen."""
-        if folder is None:
-            return None
-        row["records_bytes"] = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
-        wanted = row["success"] is False or row["severity"] > job["bar"] or is_sampled(job["id"], self._settings.sample)
-        packed = _tar(folder) if wanted or not row["judged"] else None
-        shutil.rmtree(folder)
-        return packed
+    def _is_kept(self, job: dict[str, Any], result: Result) -> bool:
+        """Return whether a folder is a failure's, one of the sample, or of a worse drive than the command has seen."""
+        passed = result.success.passed
+        return passed is not True or severity(result) > job["bar"] or is_sampled(job["id"], self._settings.sample)
 
-    def _route(self, job: dict[str, Any]) -> WrittenDrive:
+    def _route(self, job: dict[str, Any]) -> DriveDone:
         """Drive a route.
 
         Raises:
@@ -201,7 +184,7 @@ class _Player:
             self._plans[key] = prepare(options, self._agents[job["agent"]], has_conditions=False)
         return self._plans[key]
 
-    def _case(self, job: dict[str, Any]) -> WrittenDrive:
+    def _case(self, job: dict[str, Any]) -> DriveDone:
         """Play a case."""
         settings = self._settings
         options = ScenarioOptions(
@@ -223,43 +206,11 @@ class _Player:
         return play_case(session, self._agents[job["agent"]], playable, self._scratch, job["id"])
 
 
-def row_of(result: Result, own: Sequence[Metric]) -> dict[str, Any]:
-    """Return the columns of a table's row that follow from the result of a drive; ``own`` are users' metrics."""
-    case, scores, said = result.case, result.scores, result.success
-    if case is None:
-        row = {
-            **_verdict(said.passed, 1.0 if scores is None else 1.0 - scores.driving),
-            **metric_values(result, own),
-            "message": "; ".join(said.reasons) or result.outcome.message,
-            "not_exercised": not_exercised(result.scenarios),
-        }
-        return {**row, "simulated_s": float(result.meta["simulated_s"])}
-    row = {
-        **_verdict(said.passed, _narrowness(case["margins"])),
-        **metric_values(result, own),
-        "fault": case["fault"],
-        "message": case["message"],
-        "not_exercised": not_exercised([case]),
-        **{f"margin_{name}": value for name, value in case["margins"].items()},
-    }
-    return {**row, "simulated_s": round(result.meta["simulated_s"], 3)}
-
-
 def _after(status: Status, success: bool | None) -> After:  # noqa: FBT001 - a value, not a switch
     """Return what follows a drive; an unsafe record is a failure, so no fault of the simulator gives it another try."""
     if status in AGAIN:
         return After.FRESH if success is False else After.AGAIN
     return After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
-
-
-def _verdict(success: bool | None, severity: float) -> dict[str, Any]:  # noqa: FBT001 - a value, not a switch
-    return {"judged": success is not None, "success": success, "severity": 1.0 if success is False else severity}
-
-
-def _narrowness(margins: dict[str, float | None]) -> float:
-    """How narrow a drive was, 0 to 1: 1/(1 + margin), the margin in s or m, of the narrowest."""
-    known = [value for value in margins.values() if value is not None]
-    return max((1.0 / (1.0 + max(0.0, value)) for value in known), default=0.0)
 
 
 def is_sampled(identity: str, share: float) -> bool:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE, is_locked, read_campaign_document
+from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE, read_campaign_document
 from basu.campaigns.drive_table import DRIVES, journal_rows, open_drives
 from basu.campaigns.evidence import Evidence
 from basu.files import read_json
 from basu.intervals import wilson
+from basu.running.folder_lock import is_locked
 
 if TYPE_CHECKING:
     from pathlib import Path

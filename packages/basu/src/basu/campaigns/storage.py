@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from basu.campaigns.campaign_folder import CAMPAIGN_FILE, LOCK_FILE, PROGRESS_FILE, SCRATCH
+from basu.campaigns.campaign_folder import CAMPAIGN_FILE, PROGRESS_FILE, SCRATCH
 from basu.campaigns.drive_table import JOURNAL
 from basu.campaigns.records import DRIVE_FILE
 from basu.errors import UserError
@@ -182,7 +182,7 @@ def _files_in(folder: Path) -> dict[str, tuple[int, int]]:
         for file in files:
             path = Path(parent, file)
             name = path.relative_to(folder).as_posix()
-            if file.startswith(".") or file == LOCK_FILE:
+            if file.startswith("."):
                 continue
             with contextlib.suppress(FileNotFoundError):
                 found[name] = _state(path)

@@ -30,6 +30,9 @@ def add_experiment(command: argparse.ArgumentParser) -> None:
         "Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."
     )
     command.add_argument("name", choices=["thesis"], help="section 5.5: four agents on the short route")
+    command.add_argument(
+        "--resume", type=Path, dest="folder", metavar="FOLDER", help="continue an experiment that was broken off"
+    )
     add_options(command, RunOptions, only=(*SIMULATOR, "seed", "output"))
     command.set_defaults(command=later("basu.cli.experiment:run"))
 

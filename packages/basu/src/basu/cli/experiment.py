@@ -11,4 +11,4 @@ from basu.running.thesis_experiment import thesis
 
 def run(arguments: argparse.Namespace) -> int:
     """Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."""
-    return thesis(options_of(RunOptions, arguments))
+    return thesis(options_of(RunOptions, arguments), arguments.folder)

@@ -12,10 +12,10 @@ from basu.cli.typed_options import config_of, options_of, scoring_of
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.output.report.documents import CONFIG_FILE
+from basu.running.batch import changes
 from basu.running.outputs import check_outputs
 from basu.running.scenario_runs.command import run_scenarios
 from basu.running.scenario_runs.options import ScenarioOptions
-from basu.running.series import changes
 from basu.settings.option import fields_of, to_json
 
 if TYPE_CHECKING:

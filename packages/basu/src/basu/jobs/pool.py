@@ -10,7 +10,7 @@ from basu.errors import UserError
 from basu.jobs.job import After, Died, Done, Job, Lost, Played, Ready, Refused, raised, versions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Generator, Iterable, Iterator, Sequence
 
     from basu.jobs.job import Answer
 
@@ -70,7 +70,7 @@ class Pool(Generic[W]):
         self._failed_starts = 0
         self._ready_once: set[W] = set()
 
-    def play(self, jobs: Iterable[Job | None]) -> Iterator[Done | Lost]:
+    def play(self, jobs: Iterable[Job | None]) -> Generator[Done | Lost, None, None]:
         """Play all jobs; what comes of each, in the order in which they end.
 
         ``jobs`` may yield None where the next job depends on an answer; it is continued after the next answers.

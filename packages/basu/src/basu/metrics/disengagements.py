@@ -11,10 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from basu.metrics.infraction import Evidence, Incident, evidence, row_of
 from basu.metrics.json_schema import EVIDENCE, integer, listing, number, record
-from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.stretches import chords, path_m, stretches, total_m
+from basu.metrics.registry import Drive, Metric, Moment, register
+from basu.metrics.stretches import chords, path_m, spans, stretches, total_m
 
 if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun
@@ -72,6 +74,7 @@ class Takeovers(Metric):
     name = "disengagements"
     title = "disengagements"
     order = 70
+    timeline_row = "by hand"
     schema = record(
         null_=True,
         about_="takeovers by a person",
@@ -100,3 +103,11 @@ class Takeovers(Metric):
             return []
         miles = found["miles_per_disengagement"]
         return [f"disengagements    {found['number']}, {miles:.2f} miles by the agent to each"]
+
+    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+        """Return the stretches in which a person drove."""
+        return spans(history, history.frames["manual"].astype(np.bool_), "driven by hand", "manual")
+
+    def remark(self, result: JudgedRun) -> str:
+        """Say that a person drove a part of the way."""
+        return "driven by hand" if (result.metrics.get(self.name) or {}).get("manual_m") else ""

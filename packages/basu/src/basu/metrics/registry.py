@@ -10,16 +10,16 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
-import math
 import pkgutil
 import re
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from basu.errors import UserError
 from basu.files import module_of
+from basu.metrics.display import NAME_WIDTH, Column, Display, JudgedRun, Moment, is_number, shown
 from basu.metrics.json_schema import Schema, number
 
 if TYPE_CHECKING:
@@ -31,8 +31,9 @@ if TYPE_CHECKING:
     from basu.outcome import Outcome
     from basu.records.history import History
 
+__all__ = ["NAME_WIDTH", "Column", "Display", "Drive", "JudgedRun", "Metric", "Moment", "Watcher", "shown"]
+
 ENTRY_POINTS = "basu.metrics"
-NAME_WIDTH = 18  # of the names in the console's table
 _BUILT_IN: dict[str, Metric] = {}
 T = TypeVar("T", bound="type[Metric]")
 
@@ -47,25 +48,6 @@ class Drive:
     hears_lane_invasions: bool = True  # False in a case: its record has none of these events
 
 
-class JudgedRun(Protocol):
-    """What a metric shows of a result: its own value, and the infractions."""
-
-    @property
-    def metrics(self) -> Mapping[str, Any]:
-        """The value of each metric by name."""
-
-    @property
-    def infractions(self) -> Sequence[Evidence]:
-        """What entered the score."""
-
-
-class Column(NamedTuple):
-    """One cell of a table that compares runs."""
-
-    head: str
-    text: str
-
-
 class Watcher(Protocol):
     """What finds the events of a scored metric while a drive lasts."""
 
@@ -76,7 +58,7 @@ class Watcher(Protocol):
         """Take in what is new; ``window`` gives the record from a tick on, its ticks counted from there."""
 
 
-class Metric(ABC):
+class Metric(Display):
     """One metric. ``name`` is its key in ``result.json``.
 
     Attributes:
@@ -115,25 +97,28 @@ class Metric(ABC):
         found: Sequence[Mapping[str, Any]] = value.get("events", ()) if isinstance(value, dict) else ()
         return found
 
-    def lines(self, result: JudgedRun) -> list[str]:
-        """The lines of the console's table; nothing that did not happen takes a line."""
-        value = result.metrics.get(self.name)
-        return [f"{self.title:<{NAME_WIDTH}}{self.shown(value)}"] if isinstance(value, float | int) else []
+    @property
+    def heading(self) -> str:
+        """What people call it."""
+        return self.title
 
-    def columns(self, result: JudgedRun) -> list[Column]:  # noqa: ARG002 - a metric need not be compared
-        """The cells of a table that compares runs."""
-        return []
+    @property
+    def is_scored(self) -> bool:
+        """Whether it enters the infraction score."""
+        return bool(self.penalties)
+
+    def text(self, result: JudgedRun) -> str | None:
+        """Return the value if it is a number."""
+        value = result.metrics.get(self.name)
+        return self.shown(value) if is_number(value) else None
+
+    def series(self, value: Any) -> Mapping[str, Any]:  # noqa: ANN401, ARG002 - as `schema` says; it need have none
+        """Return what a series keeps of the value, by the names of its rows."""
+        return {}
 
     def shown(self, value: float | None) -> str:
-        """A number with its unit, as people read it."""
+        """Return a number with its unit, as people read it."""
         return shown(value, self.unit, self.digits)
-
-
-def shown(value: float | None, unit: str, digits: int) -> str:
-    """A number with its unit; a dash where there is none."""
-    if value is None or not math.isfinite(value):
-        return "\N{EN DASH}"
-    return f"{value:.{digits}f}{f' {unit}' if unit else ''}"
 
 
 def register(metric: T) -> T:

@@ -9,7 +9,8 @@ import numpy as np
 
 from basu.metrics.json_schema import flag, integer, listing, mapping, number, record, text
 from basu.metrics.path_following import near_stop, path_following, serving
-from basu.metrics.registry import Drive, Metric, register
+from basu.metrics.registry import Drive, Metric, Moment, register
+from basu.metrics.stretches import spans
 
 if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun
@@ -39,6 +40,8 @@ class Reported(Metric):
     name = "reported"
     title = "reported, not scored"
     order = 0
+    has_figures = True
+    timeline_row = "lane lines crossed"
     schema = record(
         null_=True,
         about_="figures that enter no score",
@@ -77,6 +80,18 @@ class Reported(Metric):
         invasions = [] if lanes is None else [f"{'lane invasions':<18}{lanes['total']} (reported, not scored)"]
         return [*invasions, f"{'driven':<18}{way:>8}"]
 
+    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+        """Return each lane invasion."""
+        times_s = [(float(history.frames["t_s"][event.tick]), event) for event in history.lane_invasions]
+        return [
+            Moment(t_s, None, f"{', '.join(event.markings)} at {t_s:.1f} s", "", "stroke") for t_s, event in times_s
+        ]
+
+    def series(self, value: Any) -> dict[str, Any]:  # noqa: ANN401 - as `schema` says
+        """Return the way."""
+        found = value or {}
+        return {"driven_m": found.get("driven_m", 0.0), "planned_m": found.get("planned_m")}
+
 
 @register
 class ServiceStops(Metric):
@@ -85,6 +100,7 @@ class ServiceStops(Metric):
     name = "stops"
     title = "service stops"
     order = 25
+    timeline_row = "service stops"
     schema = listing(
         record(
             id=text(),
@@ -120,3 +136,12 @@ class ServiceStops(Metric):
         stops = result.metrics[self.name]
         served = sum(stop["served"] for stop in stops)
         return [f"service stops     {served} of {len(stops)} served"] if stops else []
+
+    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+        """Return the stretches at rest at each stop."""
+        found = [
+            span._replace(label=stop.id)
+            for stop in history.facts.route.stops
+            for span in spans(history, serving(history, stop.s_m), f"{stop.id}, {stop.name}", "service")
+        ]
+        return sorted(found)

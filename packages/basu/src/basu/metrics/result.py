@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 from basu.metrics.collisions import responsibilities
+from basu.metrics.display import Display, is_number, shown
 from basu.metrics.infraction import (
     CollisionKind,
     Evidence,
@@ -35,6 +36,7 @@ from basu.metrics.success import NOT_JUDGED, Success, success
 from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
+    from basu.metrics.display import JudgedRun
     from basu.records.history import History
 
 
@@ -45,7 +47,7 @@ LATER = frozenset(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnMetric:
+class OwnMetric(Display):
     """The value of a user's metric with what is needed to show it: a report does not load the user's file again."""
 
     title: str
@@ -54,6 +56,22 @@ class OwnMetric:
     value: Any
     penalties: Mapping[str, float]
     events: tuple[Mapping[str, Any], ...]
+
+    @property
+    def heading(self) -> str:
+        """What people call it."""
+        return self.title
+
+    @property
+    def is_scored(self) -> bool:
+        """Whether it enters the infraction score."""
+        return bool(self.penalties)
+
+    def text(self, result: JudgedRun) -> str:  # noqa: ARG002 - the value is here
+        """Return the value: a number with its unit, a dash where there is none, or whatever it is."""
+        if self.value is None or is_number(self.value):
+            return shown(self.value, self.unit, self.digits)
+        return str(self.value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +133,14 @@ class Result:
     def collisions(self) -> tuple[Evidence, ...]:
         """The infractions that are collisions."""
         return tuple(found for found in self.infractions if found.responsibility is not None)
+
+    def shown(self) -> tuple[Display, ...]:
+        """Return all that can be shown of the metrics: BASU's in the order of tables, then users' own."""
+        return (*built_in(), *self.own.values())
+
+    def remarks(self) -> list[str]:
+        """Return words that have to stand beside the driving score."""
+        return [remark for each in self.shown() if (remark := each.remark(self))]
 
     def events(self) -> list[Mapping[str, Any]]:
         """What metrics report with place and time beside the infractions, in order of time."""

@@ -17,7 +17,7 @@ import numpy as np
 from basu.metrics.incremental import ControlsWatcher, away_from
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
-from basu.metrics.registry import Column, Drive, Metric, register
+from basu.metrics.registry import Column, Drive, Metric, Moment, register
 from basu.metrics.validity import counts_at
 from basu.routing import ControlKind
 from basu.thresholds import AT_REST_MPS
@@ -114,6 +114,7 @@ class StopSigns(Metric):
     name = "stop_signs"
     title = "stop signs"
     order = 20
+    timeline_row = "stop signs"
     schema = listing(
         record(
             id=text(),
@@ -159,6 +160,20 @@ class StopSigns(Metric):
         stopped, slowest = sum(sign["stopped"] for sign in signs), max(sign["lowest_speed_mps"] for sign in signs)
         obeyed = f"{stopped} of {len(signs)} obeyed"
         return [f"stop signs        {obeyed}; slowest speed before any line at most {slowest:.3f} m/s"]
+
+    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the value
+        """Return each sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
+        return [
+            Moment(
+                sign["t_s"],
+                None,
+                f"stop sign {sign['id']} {'stopped at' if sign['stopped'] else 'run'}, passed at {sign['t_s']:.1f} s, "
+                f"lowest speed {sign['lowest_speed_mps']:.2f} m/s",
+                "\N{CHECK MARK}" if sign["stopped"] else "\N{BALLOT X}",
+                "at passed" if sign["stopped"] else "at passed run",
+            )
+            for sign in result.metrics[self.name]
+        ]
 
     def columns(self, result: JudgedRun) -> list[Column]:
         """How many were run."""

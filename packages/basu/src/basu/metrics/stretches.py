@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from basu.metrics.display import Moment
 from basu.metrics.infraction import Evidence, Incident, evidence, row_of
 from basu.metrics.json_schema import EVIDENCE, Schema, listing, number, record
 from basu.records.structured import StructuredArray
@@ -33,6 +34,13 @@ def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """(first, end) of every unbroken stretch of frames in which ``holds`` (T,) is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(np.int8)))
     return [(first, end) for first, end in edges.reshape(-1, 2).tolist()]
+
+
+def spans(history: History, holds: NDArray[np.bool_], what: str, style: str) -> list[Moment]:
+    """Return each stretch in which ``holds`` (T,) is true, for the timeline; ``what`` says what lasted."""
+    t_s = history.frames["t_s"]
+    found = [(float(t_s[first]), float(t_s[end - 1])) for first, end in stretches(holds)]
+    return [Moment(b, e, f"{what} from {b:.1f} s to {e:.1f} s", style=style) for b, e in found]
 
 
 def chords(points_m: NDArray[np.float64]) -> Chords:

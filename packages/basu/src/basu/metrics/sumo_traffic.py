@@ -26,6 +26,7 @@ class SumoTraffic(Metric):
     name = "sumo"
     title = "SUMO's traffic"
     order = 96
+    has_figures = True
     schema = record(
         null_=True,
         about_="SUMO's traffic: docs/how-to/sumo.md; null for a run without SUMO",

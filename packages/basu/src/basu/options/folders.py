@@ -86,16 +86,21 @@ class SeriesOptions(Settings):
             repeats=False,
         ),
     ] = None
-    resume: Annotated[bool, Option(help="continue an interrupted --series", group=FOLDERS, repeats=False)] = False
+    resume: Annotated[
+        bool,
+        Option(
+            help="continue an interrupted --series, or without one the same command after it was killed",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
 
     def check(self) -> None:
-        """Check the options of a series and the required scores.
+        """Check the required scores.
 
         Raises:
-            UserError: there is none to continue, or a required score does not exist.
+            UserError: there is no such score.
         """
-        if self.resume and self.series is None:
-            raise UserError("--resume continues a series; name it with --series, as when it was begun")
         unknown = next((name for name in self.require if name not in SCORES), None)
         if unknown is not None:
             raise UserError(f"--require {unknown}: there is no such score; {suggestion(unknown, SCORES)}")

@@ -2,49 +2,35 @@
 
 A worker writes a drive as a draft. The command gives the draft its name in one step, so a folder under its name is a
 whole one. When a batch goes on, it finds the finished folders, throws drafts away, and drives the rest.
+
+Runs, series, matrices, the thesis's experiment and campaigns are batches. They differ in `Batch.publish`: what they
+write when a drive is over.
 """
 
 from __future__ import annotations
 
 import contextlib
 import shutil
-import sys
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from tqdm import tqdm
-
-from basu.jobs.job import Job, Lost
-from basu.jobs.playing import play_jobs
+from basu.jobs.job import Lost
 from basu.metrics.result import Result
 from basu.outcome import Fault
 from basu.output.report.documents import DRAFTS, RESULT_FILE, publish, read_result
 from basu.routing.route_file import OWN_ROUTE
+from basu.running.drive import DriveDone, lost
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Generator, Iterator, Mapping
     from pathlib import Path
+    from typing import Any
 
-    from basu.jobs.job import PlayerSpec
-    from basu.running.drive import WrittenDrive
+    from tqdm import tqdm
+
+    from basu.jobs.job import Done
 
 COUNTED = frozenset({Fault.NONE, Fault.AGENT})
 """What ended otherwise says nothing of the agent, unless its record was unsafe before: that is a failure."""
-
-
-class NotBegun(NamedTuple):
-    """A drive that could not begin."""
-
-    sentence: str
-    fault: Fault
-
-
-class PublishedDrive(NamedTuple):
-    """What came of a job: a folder, or the reason why there is none."""
-
-    number: int  # of the job
-    written: WrittenDrive | None
-    folder: Path | None
-    failure: NotBegun | None = None
 
 
 def counts(result: Result) -> bool:
@@ -58,6 +44,12 @@ class Batch:
     def __init__(self, folder: Path, names: Mapping[int, str]) -> None:
         """Describe the batch; ``names`` are the folders of its drives below ``folder``, by number of the job."""
         self.folder, self._names = folder, names
+        self.drafts: Path | None = None  # where drafts of all drives are made; None: beside their folders
+
+    @property
+    def done(self) -> frozenset[int]:
+        """The numbers of the drives that an earlier command has finished."""
+        return frozenset()
 
     def name(self, number: int) -> str:
         """Return the name of a drive's folder."""
@@ -90,39 +82,44 @@ class Batch:
         return publish(folder, f"{folder.name}-{result.outcome.status.value}")
 
     def play(
-        self, player: PlayerSpec, jobs: Iterable[Job], workers: int, *, unit: str = ""
-    ) -> Generator[PublishedDrive, None, None]:
-        """Play jobs and publish the folder of each; yield what came of them in the order in which they end.
+        self, answers: Generator[Done | Lost, None, None], bar: tqdm[Any] | None = None
+    ) -> Generator[DriveDone, None, None]:
+        """Publish each drive that workers answer with; yield them in the order in which they end.
 
-        A ``unit``, such as "case", shows a progress bar of all jobs.
+        ``bar`` is a progress bar of all jobs.
 
         Raises:
             UserError, AgentError, SimulatorError: a worker cannot work, or a drive in this process cannot begin.
             KeyboardInterrupt: the user interrupted a drive; it has been yielded.
         """
-        waiting = list(jobs)
-        with (
-            tqdm(total=len(waiting), unit=unit, disable=None if unit else True, file=sys.stderr) as bar,
-            contextlib.closing(play_jobs(player, waiting, workers)) as answers,
-        ):
+        with contextlib.closing(answers):
             for answer in answers:
-                bar.update()
-                if isinstance(answer, Lost):
-                    yield PublishedDrive(answer.number, None, None, NotBegun(answer.sentence, Fault.BENCHMARK))
-                elif isinstance(answer.value, NotBegun):
-                    yield PublishedDrive(answer.number, None, None, answer.value)
-                else:
-                    written: WrittenDrive = answer.value
-                    yield PublishedDrive(answer.number, written, self.publish(written, answer.number))
+                done = lost(answer.sentence) if isinstance(answer, Lost) else answer.value
+                published = self.publish(done._replace(number=answer.number, attempts=answer.attempts))
+                if bar is not None:
+                    bar.update()
+                yield published
 
-    def publish(self, written: WrittenDrive, number: int) -> Path:
-        """Give a draft the name of its job, or one with a number where that is taken; return the folder.
+    def publish(self, done: DriveDone) -> DriveDone:
+        """Give a draft the name of its job, or one with a number where that is taken; return it with that folder.
 
         The name of a route that the agent has planned says that it is its own.
 
         Raises:
             UserError: the disk does not let us.
         """
-        name = (self.folder / self._names[number]).name
-        is_own = written.result.has_own_route and not name.endswith(OWN_ROUTE)
-        return publish(written.draft, f"{name}{OWN_ROUTE}" if is_own else name)
+        if done.folder is None:
+            return done
+        folder = self.folder / self._names[done.number]
+        is_own = done.result.has_own_route and not folder.name.endswith(OWN_ROUTE)
+        name = f"{folder.name}{OWN_ROUTE}" if is_own else folder.name
+        return done._replace(folder=publish(done.folder, name, folder.parent))
+
+
+def changes(before: Mapping[str, Any], now: Mapping[str, Any], shown: Callable[[Any], str] = repr) -> str:
+    """Name the conditions that are different, with both values as ``shown`` writes them; empty where none is."""
+    return "; ".join(
+        f"{name} was {shown(before.get(name))} and is {shown(now.get(name))}"
+        for name in sorted({*before, *now})
+        if before.get(name) != now.get(name)
+    )

@@ -1,20 +1,24 @@
-"""The loop of a run: the agent answers each frame of an episode with a control until the episode is over."""
+"""The loop of a drive, `drive`, and `DriveDone`: what came of a drive, from the worker to the end of the command."""
 
 from __future__ import annotations
 
 import time
 import traceback
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.metrics.result import judge
+from basu.metrics.success import Success
+from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from basu.episode import Episode
     from basu.errors import AgentError
     from basu.managers.agents_manager import AgentsManager
     from basu.metrics.result import Result
-    from basu.outcome import Outcome
     from basu.records.history import History
 
 
@@ -29,17 +33,32 @@ class Driven(NamedTuple):
     agent_error: AgentError | None  # what the agent failed with; its cause has the traceback
 
 
-class WrittenDrive(NamedTuple):
-    """A drive on a route or in a case that is over and written; its folder has no name yet."""
+class DriveDone(NamedTuple):
+    """A drive on a route or in a case that is over, or that could not begin."""
 
-    draft: Path
+    folder: Path | None  # a draft until the command has given it its name; None where nothing is left
     result: Result
     bug: Exception | str | None = None  # an error of our own: itself, or its traceback from another process
+    number: int = 0  # of the job
+    attempts: int = 1  # at the job
+    packed: bytes | None = None  # the folder as a tar file, from a worker that keeps no folder
+    cost: Mapping[str, Any] = {}  # of the worker: processor time, memory, host
 
-    def to_send(self) -> WrittenDrive:
+    def to_send(self) -> DriveDone:
         """Return what another process may have of it: no record, which lies in the folder, and no exception."""
         bug = "".join(traceback.format_exception(self.bug)) if isinstance(self.bug, Exception) else self.bug
-        return WrittenDrive(self.draft, replace(self.result, history=None), bug)
+        return self._replace(result=replace(self.result, history=None), bug=bug)
+
+
+def not_begun(outcome: Outcome) -> DriveDone:
+    """Return a drive that could not begin; nothing is left of it."""
+    result = judge(outcome, None)
+    return DriveDone(None, replace(result, success=Success(result.success.passed)))
+
+
+def lost(sentence: str) -> DriveDone:
+    """Return a drive over which every worker died; nothing is known of the agent."""
+    return not_begun(Outcome(Status.BENCHMARK_FAILED, sentence))
 
 
 def drive(episode: Episode, agents: AgentsManager) -> Driven:

@@ -16,7 +16,7 @@ from basu.managers.scenario_results import results_of
 from basu.metrics.registry import user_metrics
 from basu.output.report.documents import make_draft
 from basu.running.agent_drive import AgentDrive
-from basu.running.drive import Driven, WrittenDrive
+from basu.running.drive import DriveDone, Driven
 from basu.running.preparation import agents_fault, new_agents, sumo_folder
 from basu.running.run_folder import import_pictures, run_config, write_run_folder
 
@@ -46,7 +46,7 @@ class Session:
     pictures: bool = True  # whether each run gets its picture and its report
 
 
-def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> WrittenDrive:
+def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> DriveDone:
     """Make one run and write its folder as a draft for ``name`` in ``output``.
 
     Raises:
@@ -107,7 +107,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         )
     except UserError as error:
         raise UserError(f"{error}; {_rest_of(draft)}") from error
-    return WrittenDrive(draft, result, driven.bug)
+    return DriveDone(draft, result, driven.bug)
 
 
 def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
@@ -136,7 +136,7 @@ def next_agents(session: Session, job: Job) -> AgentsManager:
     return agents
 
 
-def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> WrittenDrive:
+def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> DriveDone:
     """Make one run of a series as `run_one` does; an agent that fails before its drive has had its run.
 
     Raises:
@@ -166,7 +166,7 @@ def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, out
     )
     draft = make_draft(output, name)
     result = write_run_folder(draft, driven, session.scoring, None, config, pictures=False)
-    return WrittenDrive(draft, result)
+    return DriveDone(draft, result)
 
 
 def _rest_of(draft: Path) -> str:

@@ -6,12 +6,13 @@ import contextlib
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.episode import Towns
+from basu.episode.failures import outcome_of
 from basu.episode.world import check_towns
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec
 from basu.metrics.registry import user_metrics
-from basu.outcome import Fault, Status
-from basu.running.batch import NotBegun
+from basu.outcome import Status
+from basu.running.drive import not_begun
 from basu.running.one_run import Session, next_agents, run_counted, run_one
 from basu.running.preparation import prepare
 from basu.simulator import simulator_for
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from basu.managers.agents_manager import AgentsManager
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.running.drive import WrittenDrive
+    from basu.running.drive import DriveDone
     from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
     from basu.simulator import Simulator
@@ -86,22 +87,16 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
             except (UserError, AgentError, SimulatorError) as error:
                 if here is not None:
                     raise
-                return _not_begun(error)
+                again = isinstance(error, SimulatorError)  # without a simulator it is tried again
+                return Played(not_begun(outcome_of(error, simulator.why_gone)), After.AGAIN if again else After.GO_ON)
             ends = done.result.outcome.status in ENDING
             return Played(done.to_send() if here is None else done, After.FRESH if ends else After.GO_ON)
 
         yield play
 
 
-def _driven(session: Session, agents: AgentsManager | None, job: RunJob, data: RunJobData) -> WrittenDrive:
+def _driven(session: Session, agents: AgentsManager | None, job: RunJob, data: RunJobData) -> DriveDone:
     """Drive one run; in a series, an agent that fails before its drive has had its run."""
     if session.options.series is not None:
         return run_counted(session, agents, job, output=data.output, name=data.name)
     return run_one(session, agents or next_agents(session, job), job, output=data.output, name=data.name)
-
-
-def _not_begun(error: UserError | AgentError | SimulatorError) -> Played:
-    """Return the answer about a run that could not begin; without a simulator it is tried again."""
-    if isinstance(error, SimulatorError):
-        return Played(NotBegun(str(error), Fault.SIMULATOR), After.AGAIN)
-    return Played(NotBegun(str(error), Fault.AGENT if isinstance(error, AgentError) else Fault.SETUP))

@@ -5,28 +5,30 @@ from __future__ import annotations
 import contextlib
 import shlex
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
 from basu.jobs.job import Job
+from basu.jobs.playing import play_jobs
 from basu.outcome import Status
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, read_run, run_name
 from basu.running.batch import Batch
 from basu.running.exit_code import exit_code
+from basu.running.folder_lock import locked
 from basu.running.preparation import prepare
 from basu.running.run_player import OpenWorld, RunJobData, run_player
 from basu.running.series import conditions, open_series
+from basu.running.single_runs import open_runs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.running.batch import PublishedDrive
+    from basu.running.drive import DriveDone
     from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
-    from basu.running.series import Series
 
 BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no further run would fare better
 
@@ -41,19 +43,47 @@ def run(options: RunOptions, scoring: Scoring) -> int:
     if options.workers > 1:
         check_parallel(options)
     prepared = prepare(options)
-    series = _series(options, scoring, prepared)
-    jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
-    worst = 0 if series is None else series.worst(options.require)
-    shown = series is not None or (options.workers > 1 and len(jobs) > 1)
-    try:
-        for done in runs(options, scoring, OpenWorld(prepared), jobs, series):
-            if shown:
-                print(f"run {done.number + 1} of {len(prepared.jobs)}")
-            worst = max(worst, show(done, options))
-    finally:
-        if series is not None:
+    given = conditions(options, scoring, prepared)
+    if options.series is not None:
+        return _run_series(options, scoring, prepared, given)
+    names = _names(prepared, prepared.jobs, is_parallel=options.workers > 1 and len(prepared.jobs) > 1)
+    with open_runs(options.output, given, names, resume=options.resume) as batch:
+        jobs = [job for job in prepared.jobs if job.number not in batch.done]
+        is_parallel = options.workers > 1 and len(jobs) > 1
+        return _drive(options, scoring, prepared, jobs, batch, shown=is_parallel or options.resume)
+
+
+def _run_series(options: RunOptions, scoring: Scoring, prepared: Plan, given: Mapping[str, Any]) -> int:
+    """Begin the series that the options name, or go on with it; return the exit code of its worst run.
+
+    Raises:
+        UserError, AgentError, SimulatorError: see ``run``.
+    """
+    name = plain(options.series or "")
+    if name == LATEST:
+        raise UserError(f"--series {options.series}: that name is kept for the newest run; choose another")
+    folder = options.output / name
+    with locked(folder):
+        series = open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
+        jobs = [job for job in prepared.jobs if job.number not in series.done]
+        worst = series.worst(options.require)
+        try:
+            worst = max(worst, _drive(options, scoring, prepared, jobs, series, shown=True))
+        finally:
             print(series.table())
             print(f"series folder     {series.folder}")
+    return worst
+
+
+def _drive(
+    options: RunOptions, scoring: Scoring, prepared: Plan, jobs: Sequence[RunJob], batch: Batch, *, shown: bool
+) -> int:
+    """Drive ``jobs`` and show what came of each, with its number if ``shown``; return the exit code of the worst."""
+    worst = 0
+    for done in runs(options, scoring, OpenWorld(prepared), jobs, batch):
+        if shown:
+            print(f"run {done.number + 1} of {len(prepared.jobs)}")
+        worst = max(worst, show(done, options))
     return worst
 
 
@@ -72,10 +102,11 @@ def check_parallel(options: RunOptions) -> None:
 
 
 def runs(
-    options: RunOptions, scoring: Scoring, here: OpenWorld, jobs: Sequence[RunJob], series: Series | None = None
-) -> Iterator[PublishedDrive]:
+    options: RunOptions, scoring: Scoring, here: OpenWorld, jobs: Sequence[RunJob], batch: Batch | None = None
+) -> Iterator[DriveDone]:
     """Drive runs, one after the other in this process or by workers, and publish the folder of each.
 
+    Without ``batch`` their folders are called by the time, and cannot be resumed.
     In this process the runs end with one that is interrupted or loses the simulator.
 
     Raises:
@@ -85,16 +116,17 @@ def runs(
     if not jobs:
         return
     is_parallel = options.workers > 1 and len(jobs) > 1
-    batch = Batch(options.output, _names(here.plan, jobs, is_parallel=is_parallel)) if series is None else series
+    if batch is None:
+        batch = Batch(options.output, _names(here.plan, jobs, is_parallel=is_parallel))
     player = run_player(options, scoring, None if is_parallel else here)
-    to_play = [Job(job.number, RunJobData(job.number, batch.folder, batch.name(job.number))) for job in jobs]
-    with contextlib.closing(batch.play(player, to_play, options.workers)) as answers:
+    drafts = batch.drafts or batch.folder
+    to_play = [Job(job.number, RunJobData(job.number, drafts, batch.name(job.number))) for job in jobs]
+    with contextlib.closing(batch.play(play_jobs(player, to_play, options.workers))) as answers:
         for done in answers:
             if done.folder is not None:
                 point_latest(done.folder, options.output)
             yield done
-            ended = None if done.written is None else done.written.result.outcome.status
-            if not is_parallel and ended in BREAKING_OFF:
+            if not is_parallel and done.result.outcome.status in BREAKING_OFF:
                 return
 
 
@@ -107,42 +139,25 @@ def _names(plan: Plan, jobs: Sequence[RunJob], *, is_parallel: bool) -> dict[int
     }
 
 
-def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
-    """The series of all runs, where the options name one.
-
-    Raises:
-        UserError: it can be neither begun nor gone on with.
-    """
-    if options.series is None:
-        return None
-    name = plain(options.series)
-    if name == LATEST:
-        raise UserError(f"--series {options.series}: that name is kept for the newest run; choose another")
-    folder = options.output / name
-    given = conditions(options, scoring, prepared)
-    return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
-
-
-def show(done: PublishedDrive, options: RunOptions) -> int:
+def show(done: DriveDone, options: RunOptions) -> int:
     """Show the result of a run and the place of its folder, and return its exit code.
 
     Raises:
         Exception: an error of our own in this process, once all is in its place.
     """
-    if done.written is None or done.folder is None:
-        assert done.failure is not None, "a drive without a folder has a reason"
-        print(f"basu: {done.failure.sentence}")
-        return int(done.failure.fault.value)
-    result = done.written.result
+    result = done.result
+    if done.folder is None:
+        print(f"basu: {result.outcome.message}")
+        return int(result.outcome.status.fault.value)
     print(table(result))
     if options.record:
         recording = read_run(done.folder).config["recording"]
         print(f"recording         {recording['file']} ({recording['where']})")
     print(f"result folder     {done.folder}")
     print(f"to repeat         basu run --config {shlex.quote(f'{done.folder}/{CONFIG_FILE}')}")
-    if isinstance(done.written.bug, Exception):
-        raise done.written.bug
-    if done.written.bug is not None:
-        print(done.written.bug)
+    if isinstance(done.bug, Exception):
+        raise done.bug
+    if done.bug is not None:
+        print(done.bug)
     scores = None if result.scores is None else result.scores._asdict()
     return exit_code(result.outcome.status, scores, options.require)

@@ -33,12 +33,12 @@ from basu.output.report.series_document import row, series_table, totals
 from basu.settings.option import fields_of, gone_from, to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
-    from basu.running.drive import WrittenDrive
-from basu.running.batch import Batch, counts
+    from basu.running.drive import DriveDone
+from basu.running.batch import Batch, changes, counts
 from basu.running.exit_code import exit_code
 from basu.running.preparation import Job, Plan
 
@@ -58,13 +58,15 @@ class Series(Batch):
         """The numbers of the runs that count."""
         return frozenset(each["number"] for each in self._document["runs"])
 
-    def publish(self, written: WrittenDrive, number: int) -> Path:
-        """Put a finished run in its place and count it, or set it aside; return the folder.
+    def publish(self, done: DriveDone) -> DriveDone:
+        """Put a finished run in its place and count it, or set it aside; return it with its folder.
 
         Raises:
             UserError: the disk does not let us.
         """
-        draft, result, name = written.draft, written.result, self.name(number)
+        if done.folder is None:
+            return done
+        draft, result, name = done.folder, done.result, self.name(done.number)
         if not counts(result):
             status = result.outcome.status.value
             folder = publish(draft, f"{name}-{status}")
@@ -76,9 +78,9 @@ class Series(Batch):
                     f"{folder.with_name(name)} is there already: another command drives the series "
                     f"{self.folder.name} at the same time; this run is left in {folder.name} and not counted"
                 )
-            self._count(result, number)
+            self._count(result, done.number)
         self.write()
-        return folder
+        return done._replace(folder=folder)
 
     def take_in(self) -> None:
         """Count the runs that were finished and not yet listed, and throw drafts away."""
@@ -107,7 +109,7 @@ class Series(Batch):
 
     def _count(self, result: Result, number: int) -> None:
         rows, repetition = self._document["runs"], self._jobs[number].repetition
-        rows.append(row(result.document(), number=number, repetition=repetition, folder=self.name(number)))
+        rows.append(row(result, number=number, repetition=repetition, folder=self.name(number)))
         rows.sort(key=lambda each: each["number"])
 
 
@@ -199,15 +201,6 @@ def _name(job: Job, agent: str) -> str:
 def _digest(data: bytes) -> str:
     """Short for what is too long to be stored."""
     return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
-
-
-def changes(before: Mapping[str, Any], now: Mapping[str, Any], shown: Callable[[Any], str] = repr) -> str:
-    """Name the conditions that are different, with both values as ``shown`` writes them; empty where none is."""
-    return "; ".join(
-        f"{name} was {shown(before.get(name))} and is {shown(now.get(name))}"
-        for name in sorted({*before, *now})
-        if before.get(name) != now.get(name)
-    )
 
 
 def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) -> None:

@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu.episode import Towns
 from basu.errors import SimulatorError, UserError
 from basu.files import find, read_json
+from basu.jobs.job import versions
 from basu.metrics.infraction import Infraction
 from basu.metrics.score import driving_score
 from basu.outcome import Fault, Status
 from basu.output.report.comparison_page import compare
-from basu.output.report.documents import read_run
+from basu.output.report.documents import read_run, write_json
+from basu.running.batch import Batch, changes, counts
+from basu.running.folder_lock import locked
 from basu.running.preparation import prepare
 from basu.running.run_player import OpenWorld
 from basu.running.runner import runs, show
@@ -123,6 +126,7 @@ def _number(count: int, what: str) -> str:
     return f"{ ({0: 'no', 1: 'one'}.get(count, str(count))) } {what}{'' if count == 1 else 's'}"
 
 
+EXPERIMENT_FILE = "experiment.json"
 KEYS = "data/human_session.json"  # of the human; it states the source of the keys
 ROUTE, VEHICLE, WEATHER = "routes/linden_short.xml", "vehicle.tesla.model3", "ClearSunset"
 
@@ -143,30 +147,23 @@ CASES = (
 )
 
 
-def thesis(options: RunOptions) -> int:
+def thesis(options: RunOptions, resumed: Path | None = None) -> int:
     """Drive all four and print our table beside table 5.1; ``options`` says where, and with which seed.
+
+    ``resumed`` is the folder of an experiment that was broken off: the drives that are there are not driven again.
 
     Raises:
         UserError, AgentError: an agent cannot be driven.
         SimulatorError: the simulator failed.
     """
     began_s = time.monotonic()
-    folder = options.output / f"experiment-thesis-{datetime.now(timezone.utc).astimezone():%Y-%m-%dT%H-%M-%S}"
-    try:
-        folder.mkdir(parents=True)
-    except OSError as error:
-        raise UserError(f"{folder} could not be made: {error.strerror}; name another place with --output") from error
-    ours: dict[str, Measured] = {}
-    folders = []
-    with simulator_for(options.simulator) as simulator:
-        towns = Towns(simulator)
-        for number, case in enumerate(CASES, start=1):
-            print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
-            folders.append(_drive(case, replace(options, output=folder), simulator, towns))
-            ours[case.row] = _row(folders[-1])
-    by = read_json(find(KEYS, "session of keys"), "the session of keys")["by"]
-    explained = differences(PRINTED, ours, by)
-    written = compare(folders, folder, in_page(PRINTED, ours, explained))
+    name = f"experiment-thesis-{datetime.now(timezone.utc).astimezone():%Y-%m-%dT%H-%M-%S}"
+    folder = options.output / name if resumed is None else resumed
+    with locked(folder):
+        _begin(folder, options, resume=resumed is not None)
+        folders = _drive_all(replace(options, output=folder))
+        ours = {case.row: _row(folders[case.row]) for case in CASES}
+        explained, written = _compared(folder, folders, ours)
     print(f"\n{text(PRINTED, ours)}\n")
     print("\n".join(f"- {sentence}" for sentence in explained))
     print(f"\n{written}")
@@ -174,11 +171,61 @@ def thesis(options: RunOptions) -> int:
     return 0
 
 
+def _begin(folder: Path, options: RunOptions, *, resume: bool) -> None:
+    """Write what the experiment depends on, or compare it with that of one that goes on.
+
+    Raises:
+        UserError: there is no experiment to go on with, or it was begun differently.
+    """
+    path = folder / EXPERIMENT_FILE
+    now = {"--seed": options.seed, "the simulator": "our own" if options.host is None else "at --host", **versions()}
+    if not resume:
+        write_json(path, now)
+        return
+    if not path.exists():
+        raise UserError(f"{folder} is no folder of an experiment that can go on; leave out --resume to begin another")
+    changed = changes(read_json(path, "the experiment's document"), now)
+    if changed:
+        raise UserError(f"the experiment in {folder} was begun differently: {changed}; begin another without --resume")
+
+
+def _drive_all(options: RunOptions) -> dict[str, Path]:
+    """Drive the runs that are not there yet, in one simulator; return the folder of each by row.
+
+    Raises:
+        UserError, AgentError, SimulatorError, KeyboardInterrupt: a drive is none that can be compared.
+    """
+    batch = Batch(options.output, dict(enumerate(case.row for case in CASES)))
+    batch.clear()
+    folders = {}
+    for number, result in list(batch.finished()):
+        if counts(result):
+            folders[batch.name(number)] = options.output / batch.name(number)
+        else:
+            batch.set_aside(number, result)
+    left = [(number, case) for number, case in enumerate(CASES, start=1) if case.row not in folders]
+    if left:
+        with simulator_for(options.simulator) as simulator:
+            towns = Towns(simulator)
+            for number, case in left:
+                print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
+                folders[case.row] = _drive(case, options, simulator, towns)
+                _row(folders[case.row])  # a drive that cannot be compared ends the experiment
+    return folders
+
+
+def _compared(folder: Path, folders: Mapping[str, Path], ours: Mapping[str, Measured]) -> tuple[list[str], str]:
+    """Write the comparison; return the sentences about differences, and the line that names the page."""
+    explained = differences(PRINTED, ours, read_json(find(KEYS, "session of keys"), "the session of keys")["by"])
+    return explained, str(compare([folders[case.row] for case in CASES], folder, in_page(PRINTED, ours, explained)))
+
+
 def _drive(case: Case, options: RunOptions, simulator: Simulator, towns: Towns) -> Path:
     """Drive one of the four runs in the simulator of all, and return its folder."""
     wanted = replace(options, agent=case.agent, keys=case.keys, routes=ROUTE, vehicle=VEHICLE, weather=WEATHER)
     plan = prepare(wanted)
-    (done,) = runs(wanted, SCORING, OpenWorld(plan, simulator, towns), plan.jobs)
+    batch = Batch(options.output, {0: case.row})
+    (done,) = runs(wanted, SCORING, OpenWorld(plan, simulator, towns), plan.jobs, batch)
     show(done, wanted)
     assert done.folder is not None, "a drive in this process that cannot begin raises its error"
     return done.folder

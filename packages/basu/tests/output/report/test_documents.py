@@ -14,7 +14,7 @@ import pytest
 
 from basu.errors import UserError
 from basu.files import PACKAGE_FOLDER
-from basu.metrics.result import judge
+from basu.metrics.result import Result, judge
 from basu.outcome import Outcome, Status
 from basu.output.report.document_parts import SCHEMAS, schema_text
 from basu.output.report.documents import (
@@ -109,7 +109,10 @@ def test_a_document_without_a_number_is_a_bug_not_a_file(tmp_path: Path) -> None
 
 
 def a_series() -> dict[str, Any]:
-    rows = [row(a_result(), number=number, repetition=number, folder=f"run-{number}") for number in range(2)]
+    rows = [
+        row(Result.from_document(a_result()), number=number, repetition=number, folder=f"run-{number}")
+        for number in range(2)
+    ]
     document = {
         "schema_version": 1,
         "options": {"--seed": 0},

@@ -76,7 +76,7 @@ def test_the_page_of_a_comparison_has_a_table_for_each_track(tmp_path: Path) -> 
 
 
 def series(*runs: RunRecord) -> str:
-    found = [row(run.result.document(), number=n, repetition=n, folder=str(n)) for n, run in enumerate(runs)]
+    found = [row(run.result, number=n, repetition=n, folder=str(n)) for n, run in enumerate(runs)]
     return series_table("s", {"runs": found, "totals": totals(found, len(found))})
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from basu.cli import main
 from basu.jobs.playing import play_jobs
-from basu.running import batch
+from basu.running.scenario_runs import command
 from cheating_agent import BENCHMARK
 from servers import RunningServer
 
@@ -222,7 +222,7 @@ def test_a_process_that_dies_costs_its_own_case_only(
     files: Path, tmp_path: Path, kills: Callable[[str, str], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is not tried again here: packages/basu/tests/jobs/test_pool.py has the tries."""
-    monkeypatch.setattr(batch, "play_jobs", partial(play_jobs, attempts=1))
+    monkeypatch.setattr(command, "play_jobs", partial(play_jobs, attempts=1))
     bad = tmp_path / "bad.py"
     deed = kills(BENCHMARK, "signal.SIGKILL")
     bad.write_text(AGENTS.replace("pass  # ends the worker", deed), encoding="utf-8")

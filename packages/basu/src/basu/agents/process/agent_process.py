@@ -69,7 +69,7 @@ class Memory(NamedTuple):
 
 
 class Bounds(NamedTuple):
-    """The bounds of a process, beside those that all have."""
+    """The bounds that a drive sets to a process."""
 
     memory: Memory | None = None
     writable: tuple[str, ...] = ()  # folders in which it may write beside its own

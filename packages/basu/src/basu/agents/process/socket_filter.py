@@ -1,8 +1,8 @@
 """A filter of system calls, for sockets of the agent's process to which Landlock's rules of ports do not apply.
 
 Landlock checks ``connect`` and ``bind`` of plain TCP sockets. Other calls reach the same ports: sockets of MPTCP and
-SMC, a connection that begins with the first data (TCP Fast Open), raw packets, and calls by io_uring. The filter is a
-program of classic BPF for seccomp (https://docs.kernel.org/userspace-api/seccomp_filter.html), which needs no
+SMC, raw packets, and calls by io_uring. So does a connection that begins with the first data (TCP Fast Open). The filter
+is a program of classic BPF for seccomp (https://docs.kernel.org/userspace-api/seccomp_filter.html), which needs no
 privilege. All processes that a filtered one starts inherit it, and none can take it off.
 """
 

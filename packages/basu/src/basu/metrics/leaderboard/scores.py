@@ -95,6 +95,9 @@ def _completion(history: History, end: Ending, version: Version) -> float:
     return percent if version is Version.V1_0 else round(percent, 2)
 
 
+COMPARED = ("driving", "route_completion", "infraction_penalty")  # what a series keeps of each version
+
+
 @register
 class Leaderboard(Metric):
     """The same drive as each version of the CARLA leaderboard scores it."""
@@ -128,6 +131,11 @@ class Leaderboard(Metric):
             f"x {scores['infraction_penalty']:.3f}{_ended(scores)}"
             for version, scores in result.metrics[self.name].items()
         ]
+
+    def series(self, value: Any) -> dict[str, Any]:  # noqa: ANN401 - as `schema` says
+        """Return the scores of each version."""
+        versions = (value or {}).items()
+        return {"leaderboard": {version: {name: scores[name] for name in COMPARED} for version, scores in versions}}
 
     def columns(self, result: JudgedRun) -> list[Column]:
         """The driving score of version 2.1."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.metrics.registry import Column, built_in
-from basu.output.report.console import score_cell, why_not_comparable, written
+from basu.metrics.display import Column
+from basu.output.report.console import score_cell, why_not_comparable
 from basu.output.report.streets import bounds_of, union
 from basu.output.report.templates import DASH, figure
 from basu.output.report.tracks import apart, titled, track_of
@@ -68,8 +68,7 @@ def row(agent: str, result: Result) -> ComparedRun:
         Column("driving score", score_cell(result)),
         Column("infraction score", figure(scores.get("infraction"))),
         Column("path following", figure(scores.get("path_following"))),
-        *(column for metric in built_in() for column in metric.columns(result)),
-        *(Column(own.title, written(own.value, own.unit, own.digits)) for own in result.own.values()),
+        *(column for each in result.shown() for column in each.columns(result)),
         Column("result", result.success.word),
         Column("ended", result.outcome.status.value),
     ]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.metrics.registry import NAME_WIDTH, built_in, shown
+from basu.metrics.display import NAME_WIDTH
+from basu.metrics.registry import built_in
 from basu.metrics.success import not_exercised
 from basu.output.report.scenarios.tally import LOOKS
 from basu.output.report.tracks import NO_GATE, ON_OWN_ROUTE
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 SCORES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 NOT_COMPARABLE = "NOT COMPARABLE"
 NOT_COMPLETED = "not completed"
-BY_HAND = "driven by hand"
 
 
 def table(result: Result) -> str:
@@ -50,7 +50,7 @@ def score_cell(result: Result) -> str:
     if result.scores is None:
         return f"{NOT_COMPLETED} (nothing was driven)"
     figure = f"{result.scores.driving:.3f}"
-    by_hand = f", {BY_HAND}" if is_by_hand(result) else ""
+    by_hand = "".join(f", {remark}" for remark in result.remarks())
     if result.is_comparable:
         return f"{figure}{by_hand}"
     if not result.is_broken_off:
@@ -58,15 +58,10 @@ def score_cell(result: Result) -> str:
     return f"{NOT_COMPLETED} (the thesis's figure: {figure}{by_hand}; {NOT_COMPARABLE})"
 
 
-def is_by_hand(result: Result) -> bool:
-    """Return whether a person drove a part of the way."""
-    return bool((result.metrics.get("disengagements") or {}).get("manual_m"))
-
-
 def score_lines(result: Result) -> list[str]:
     """The thesis's scores; a run that a failure ended says so in the place of its score, the figure behind it."""
     assert result.scores is not None, "the caller asks"
-    scores, mark = result.scores._asdict(), f"  {BY_HAND}" if is_by_hand(result) else ""
+    scores, mark = result.scores._asdict(), "".join(f"  {remark}" for remark in result.remarks())
     lines = [
         f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()
     ]
@@ -107,15 +102,8 @@ def judgement(result: Result) -> list[str]:
         *_simulated(result.meta),
         *(line for found in result.infractions for line in _infraction(found)),
         *(line for metric in metrics if metric.order > 0 for line in metric.lines(result)),
-        *(f"{own.title:<{NAME_WIDTH}}{written(own.value, own.unit, own.digits)}" for own in result.own.values()),
+        *(line for own in result.own.values() for line in own.lines(result)),
     ]
-
-
-def written(value: Any, unit: str, digits: int) -> str:  # noqa: ANN401 - the value of a user's metric
-    """Return the value of a user's metric as people read it."""
-    if value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
-        return shown(value, unit, digits)
-    return str(value)
 
 
 def _infraction(found: Evidence) -> list[str]:

@@ -122,10 +122,12 @@ class CellPart(TypedDict):
 
     verdict: VerdictName
     fault: FaultName
+    status: NotRequired[Annotated[str, "how the drive ended"]]
     message: str
     assessment: Annotated[AssessmentPart | None, "the answers of the policy; null where nothing was recorded"]
     collisions: list[CollisionPart]
     margins: Annotated[MarginsPart, "how narrowly, least of all; null where no actor came near"]
+    simulated_s: NotRequired[Amount]
     wall_s: Amount
     access: NotRequired[
         Annotated[CaseAccessPart, "the agent's access to the simulator; absent where nothing was driven"]

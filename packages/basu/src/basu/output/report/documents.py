@@ -61,15 +61,17 @@ def make_draft(output: Path, name: str) -> Path:
         return draft
 
 
-def publish(draft: Path, name: str) -> Path:
-    """Give a draft its name, or with a number where that is taken; the folder under its name.
+def publish(draft: Path, name: str, output: Path | None = None) -> Path:
+    """Give a draft its name, or one with a number where that is taken; return the folder under its name.
+
+    It is moved to ``output``; without that it stays where the draft is.
 
     Raises:
         UserError: it cannot be renamed.
     """
     number = 1
     while True:
-        folder = draft.with_name(_numbered(name, number))
+        folder = (output or draft.parent) / _numbered(name, number)
         try:
             if not folder.exists():
                 draft.rename(folder)

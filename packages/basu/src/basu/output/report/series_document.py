@@ -6,43 +6,24 @@ import statistics
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from basu.output.report.tracks import ON_OWN_ROUTE, track_of
+from basu.metrics.leaderboard.scores import COMPARED
+from basu.output.report.document_parts import SeriesRow
+from basu.output.report.drive_row import part_of, row_of
+from basu.output.report.tracks import ON_OWN_ROUTE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from basu.metrics.result import Result
 
 SCORES = ("driving", "infraction", "path_following")
-COMPARED = ("driving", "route_completion", "infraction_penalty")  # of each version of the leaderboard
 PASSED = {"passed": True, "failed": False, "not judged": None}  # by the one rule of success
 NAMES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 
 
-def row(document: Mapping[str, Any], *, number: int, repetition: int, folder: str) -> dict[str, Any]:
+def row(result: Result, *, number: int, repetition: int, folder: str) -> dict[str, Any]:
     """Return what a series keeps of a run's result."""
-    reported, meta = document["reported"] or {}, document["meta"]
-    return {
-        "number": number,
-        "route": meta["route"],
-        "repetition": repetition,
-        "seed": meta["seed"],
-        "folder": folder,
-        "status": document["status"],
-        "fault": document["fault"],
-        "passed": document.get("passed"),
-        "own_route": bool(meta.get("own_route")),
-        "scores": document["scores"],
-        "leaderboard": {
-            version: {name: scores[name] for name in COMPARED}
-            for version, scores in (document["leaderboard"] or {}).items()
-        },
-        "infractions": dict(sorted(Counter(found["kind"] for found in document["infractions"]).items())),
-        "driven_m": reported.get("driven_m", 0.0),
-        "planned_m": reported.get("planned_m"),
-        "simulated_s": meta["simulated_s"],
-        "wall_s": meta["wall_s"],
-        "track": track_of(meta.get("access")),
-    }
+    return part_of({**row_of(result), "number": number, "repetition": repetition, "folder": folder}, SeriesRow)
 
 
 def totals(rows: Sequence[Mapping[str, Any]], planned: int) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.conditions import STEP_S
 from basu.outcome import Outcome, Status
-from basu.output.report.document_parts import MATRIX_SCHEMA_VERSION
+from basu.output.report.document_parts import MATRIX_SCHEMA_VERSION, CellPart
+from basu.output.report.drive_row import part_of, row_of
 from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
 
     from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
-    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.records.history import History
+    from basu.running.drive import DriveDone
     from basu.scenarios.playable import Playable
     from basu.scenarios.shares import CountedCase
     from basu.scenarios.verdict import Judged
@@ -141,39 +142,19 @@ def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))
 
 
-SUMMARY = (  # entries of a result
-    "verdict",
-    "fault",
-    "status",
-    "message",
-    "assessment",
-    "collisions",
-    "margins",
-    "simulated_s",
-    "wall_s",
-    "access",  # none where nothing was driven
-)
-
-
-def row_of(result: Result, folder: Path) -> tuple[dict[str, Any], str]:
-    """Return the case of a drive's result with the agent's access, and its folder below that of the matrix."""
-    assert result.case is not None, "it is the drive of a case"
-    access = result.meta.get("access")
-    return {**result.case, **({} if access is None else {"access": access})}, folder.as_posix()
-
-
 def matrix_of(
     options: ScenarioOptions,
     agents: Sequence[str],
     drives: Sequence[tuple[Playable, int]],
-    found: Mapping[int, tuple[dict[str, Any], str]],
+    found: Mapping[int, DriveDone],
+    folder: Path,
     began: datetime,
     wall_s: float,
 ) -> dict[str, Any]:
     """Return the document.
 
-    ``drives`` are cases with the number of their repetition. ``found`` has rows and folders by number of the job,
-    drives before agents.
+    ``drives`` are cases with the number of their repetition. ``found`` are the finished ones by
+    number of the job, drives before agents; ``folder`` is that of the matrix.
     """
     rows: list[dict[str, Any]] = []
     by_agent: dict[str, list[CountedCase]] = {agent: [] for agent in agents}
@@ -184,9 +165,10 @@ def matrix_of(
             if done is None:
                 by_agent[agent].append(not_played(about(playable)))
             else:
-                case, folder = done
-                by_agent[agent] += results_from([case])
-                results[agent] = {**{key: case[key] for key in SUMMARY if key in case}, "folder": folder}
+                assert done.result.case is not None, "it is the drive of a case"
+                by_agent[agent] += results_from([done.result.case])
+                where = "" if done.folder is None else done.folder.relative_to(folder).as_posix()
+                results[agent] = part_of({**row_of(done.result), "folder": where}, CellPart)
         repeated = {"repetition": repetition} if options.repetitions > 1 else {}
         rows.append({**about(playable), **repeated, "results": results})
     return {

@@ -6,12 +6,14 @@ import shlex
 import sys
 import time
 from datetime import datetime, timezone
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tqdm import tqdm
 
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.jobs.job import Job
+from basu.jobs.playing import play_jobs
 from basu.managers.agents_manager import ignored_wishes
 from basu.metrics.registry import user_metrics
 from basu.metrics.scoring import Scoring
@@ -24,15 +26,19 @@ from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matri
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.batch import Batch, counts
-from basu.running.scenario_runs.case_documents import matrix_of, row_of, run_config
+from basu.running.drive import DriveDone
+from basu.running.folder_lock import locked
+from basu.running.scenario_runs.case_documents import matrix_of, run_config
 from basu.running.scenario_runs.player import agents_of, case_player
 from basu.running.scenario_runs.suite import Suite
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
+    from basu.jobs.job import PlayerSpec
     from basu.running.scenario_runs.options import ScenarioOptions
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
@@ -105,47 +111,57 @@ def play_matrix(
             f"--record-keys records one drive, and these are {len(suite.drives)}; name one case and one agent"
         )
     folder = _folder(options, began) if resumed is None else resumed
-    batch = Batch(folder, suite.names)
-    if resumed is None:
-        write_json(folder / CONFIG_FILE, run_config(options, scoring, suite.agents))
-    rows = _taken_in(batch)
-    jobs = [Job(number, suite.job(number)) for number in range(len(suite.drives)) if number not in rows]
-    # Classes that are given stay in this process: no other one has them.
-    workers = 1 if options.needs_one_simulator or given is not None else options.workers
-    interrupted, matrix = False, None
-    try:
-        player = case_player(options, scoring, folder, given)
-        for done in batch.play(player, jobs, workers, unit="" if quiet else "case"):
-            if done.written is not None and done.folder is not None:
-                rows[done.number] = row_of(done.written.result, done.folder.relative_to(folder))
-            elif done.failure is not None:
-                rows[done.number] = (suite.lost(done.number, done.failure.sentence), "")
-    except KeyboardInterrupt:
-        interrupted = True
-    finally:
-        batch.clear()
-        if rows:
-            matrix = matrix_of(options, suite.agent_names, suite.rows, rows, began, time.perf_counter() - began_s)
-            write_json(folder / MATRIX_FILE, matrix)
-            _write_reports(folder, matrix, options.junit)
-    code = Fault.USER.value if interrupted else worst(row for row, _ in rows.values())
+    with locked(folder):
+        if resumed is None:
+            write_json(folder / CONFIG_FILE, run_config(options, scoring, suite.agents))
+        batch, matrix = Batch(folder, suite.names), None
+        found = _taken_in(batch)
+        # Classes that are given stay in this process: no other one has them.
+        workers = 1 if options.needs_one_simulator or given is not None else options.workers
+        try:
+            code = _play(batch, suite, case_player(options, scoring, folder, given), workers, found, quiet=quiet)
+        finally:
+            batch.clear()
+            if found:
+                wall_s = time.perf_counter() - began_s
+                matrix = matrix_of(options, suite.agent_names, suite.rows, found, folder, began, wall_s)
+                write_json(folder / MATRIX_FILE, matrix)
+                _write_reports(folder, matrix, options.junit)
     return MatrixRun(folder, matrix, code)
 
 
-def _taken_in(batch: Batch) -> dict[int, tuple[dict[str, Any], str]]:
-    """Return the rows of drives that an earlier command has finished; drives that do not count are set aside.
+def _play(
+    batch: Batch, suite: Suite, player: PlayerSpec, workers: int, found: dict[int, DriveDone], *, quiet: bool
+) -> int:
+    """Play the drives of a suite that are not in ``found``, and add them to it; return the exit code.
+
+    Raises:
+        UserError, SimulatorError: nothing can be played like this, or there is no simulator.
+    """
+    jobs = [Job(number, suite.job(number)) for number in range(len(suite.drives)) if number not in found]
+    try:
+        with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
+            for done in batch.play(play_jobs(player, jobs, workers), bar):
+                found[done.number] = done if done.folder is not None else suite.lost(done)
+    except KeyboardInterrupt:
+        return int(Fault.USER.value)
+    return worst(done.result.case for done in found.values() if done.result.case is not None)
+
+
+def _taken_in(batch: Batch) -> dict[int, DriveDone]:
+    """Return the drives that an earlier command has finished, by number; drives that do not count are set aside.
 
     Raises:
         UserError: a result is not what it should be, or the disk does not let us.
     """
     batch.clear()
-    rows = {}
+    found = {}
     for number, result in list(batch.finished()):
         if counts(result):
-            rows[number] = row_of(result, Path(batch.name(number)))
+            found[number] = DriveDone(batch.folder / batch.name(number), result, number=number)
         else:
             batch.set_aside(number, result)
-    return rows
+    return found
 
 
 def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
@@ -164,12 +180,12 @@ def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> 
     write_matrix_page(folder, matrix)
 
 
-def worst(documents: Iterator[dict[str, Any]]) -> int:
+def worst(documents: Iterable[Mapping[str, Any]]) -> int:
     """The exit code of what went worst: a simulator that failed before a set-up, before an agent."""
     return max({_exit_code(document) for document in documents}, default=Fault.SETUP.value)
 
 
-def _exit_code(document: dict[str, Any]) -> int:
+def _exit_code(document: Mapping[str, Any]) -> int:
     """The agent's for a failure, and where nothing was exercised and the drive was not completed either."""
     absent = document["verdict"] == "NOT_EXERCISED" and document["assessment"]["completed"]["holds"] is False
     if document["verdict"] == "FAILURE" or absent:

@@ -27,7 +27,7 @@ from basu.records.history.files import write_history
 from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription
 from basu.running.agent_drive import AgentDrive
-from basu.running.drive import Driven, WrittenDrive
+from basu.running.drive import DriveDone, Driven
 from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
@@ -100,7 +100,7 @@ class _Attempt(NamedTuple):
 
 def play_case(
     session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path, name: str, repetition: int = 0
-) -> WrittenDrive:
+) -> DriveDone:
     """Play a case and write its folder as a draft for ``name``; whatever goes wrong becomes its verdict."""
     started, began_s = datetime.now(timezone.utc), time.perf_counter()
     options = replace(session.options, seed=session.options.drive_seed + repetition, sweep=None)
@@ -158,7 +158,7 @@ def play_case(
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    return WrittenDrive(draft, result)
+    return DriveDone(draft, result)
 
 
 def _judged(attempt: _Attempt, history: History | None) -> Judged:

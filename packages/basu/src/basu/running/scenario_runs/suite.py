@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.output.report.documents import plain
 from basu.running.scenario_runs.case_documents import lost
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.agents.process.remote_agent import FoundAgent
+    from basu.running.drive import DriveDone
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.playable import Playable
 
@@ -51,11 +52,12 @@ class Suite:
         name = self.names[number].rpartition("/")[2]
         return CaseJob(self.options.agents[column], playable.case.name, name, repetition)
 
-    def lost(self, number: int, sentence: str) -> dict[str, Any]:
-        """Return the case of a drive over which every worker died."""
-        playable, repetition, column = self.drives[number]
+    def lost(self, done: DriveDone) -> DriveDone:
+        """Return a drive over which every worker died, with its case."""
+        playable, repetition, column = self.drives[done.number]
         again = replace(self.options, seed=self.options.drive_seed + repetition)
-        return lost(playable, self.agents[column], sentence, again)
+        case = lost(playable, self.agents[column], done.result.outcome.message, again)
+        return done._replace(result=replace(done.result, case=case))
 
     def _names(self) -> dict[int, str]:
         """Return the folder of each drive, AGENT/CASE; ids that differ in odd characters alone are numbered."""

@@ -3,6 +3,7 @@
 import re
 import time
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -136,7 +137,7 @@ def test_a_run_amid_sumo_s_traffic_shows_its_load_and_the_riders_of_each_stop() 
     traffic = SumoRecord(**counts, seconds=seconds, passengers=riders)
     drive = driven([*at(5.0, 10.0), *at(0.0, 10.0), *at(5.0, 20.0)], route=straight_route(stops=(stop,)))
     page = report(record(replace(drive, sumo=traffic))).decode()
-    assert "<h2>SUMO's traffic</h2>" in page
+    assert "<h2>SUMO's traffic</h2>" in unescape(page)
     assert "20.000" in page, "2 s lost on 100 m are 20 s on a km"
     assert "left behind" in page
     assert '<section id="sumo">' not in report(record(drive)).decode(), "a run without SUMO has no such section"

@@ -69,7 +69,7 @@ def test_the_union_holds_both() -> None:
 def test_the_timeline_tells_signs_run_standing_and_lines_crossed() -> None:
     history = crashing()
     run = record(history)
-    page = html(timeline(history, signals(history), run.result.document(), events(run.result)))
+    page = html(timeline(history, signals(history), run.result, events(run.result)))
     assert "stop sign 7 run" in page
     assert "standing from 6.7 s to 26.6 s" in page
     assert 'href="#infraction-1"' in page
@@ -78,5 +78,5 @@ def test_the_timeline_tells_signs_run_standing_and_lines_crossed() -> None:
 def test_a_lane_line_crossed_is_a_stroke() -> None:
     history = driven(at(8.0, 25.0), lane_invasions=[LaneInvasion(tick=100, markings=("Solid/White",))])
     run = record(history)
-    page = html(timeline(history, signals(history), run.result.document(), ()))
+    page = html(timeline(history, signals(history), run.result, ()))
     assert 'title="Solid/White at 5.0 s"' in page

@@ -14,6 +14,7 @@ import numpy as np
 from markupsafe import Markup
 
 from basu.files import write_bytes
+from basu.metrics.registry import built_in
 from basu.output.report.events import events
 from basu.output.report.html.evidence import evidence
 from basu.output.report.html.score_card import rows, score_card, table
@@ -75,12 +76,15 @@ def report(run: RunRecord) -> bytes:
         "town_map": town_map(history, run.streets, found),
         "last_s": float(history.frames["t_s"][-1]),
         "samples_number": SAMPLES,
-        "timeline": timeline(history, felt, document, found),
+        "timeline": timeline(history, felt, result, found),
         "scenarios": on_the_way(result, run.config.get("command", []), history, run.streets),
         "charts": charts(history, felt, found),
         "evidence": evidence(history, felt, found),
-        "reported": table(rows(document["reported"])) if document["reported"] else None,
-        "sumo": table(rows(document["sumo"])) if document["sumo"] else None,
+        "sections": [
+            (metric.name, f"{metric.title[0].upper()}{metric.title[1:]}", table(rows(result.metrics[metric.name])))
+            for metric in built_in()
+            if metric.has_figures and result.metrics.get(metric.name)
+        ],
         "samples": _samples(history, felt),
         "script": script,
     }

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.metrics.registry import built_in
 from basu.output.report import events
-from basu.output.report.console import is_by_hand, why_not_comparable, written
+from basu.output.report.console import why_not_comparable
 from basu.output.report.templates import DASH, e, render, words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from xml.etree.ElementTree import Element
 
     from markupsafe import Markup
@@ -78,7 +80,27 @@ def _text(value: object, unit: str) -> str:
     return f"{text} {unit}" if unit else text
 
 
-FIGURES = ("comfort_parts", "harm", "largest", "balance", "vibration")  # of the passengers, behind their verdict
+CARDS = Path(__file__).parents[1] / "templates" / "metrics"  # of metrics with a card of their own, by name
+
+
+def figures(value: Mapping[str, Any], keys: Sequence[str]) -> Element:
+    """Return some figures of a value as a table."""
+    return table(rows({key: value[key] for key in keys if key in value}))
+
+
+def cards(result: Result) -> list[Markup]:
+    """Return the card of each metric that has a template of its own."""
+    return [
+        render(f"templates/metrics/{metric.name}.j2", value=value, figures=figures)
+        for metric in built_in()
+        if (value := result.metrics.get(metric.name)) and (CARDS / f"{metric.name}.j2").is_file()
+    ]
+
+
+def further(result: Result) -> list[tuple[str, str, bool]]:
+    """Return heading, text and whether it is scored of each metric that is a number or a user's own."""
+    found = [(each.heading, each.text(result), each.is_scored) for each in result.shown()]
+    return [(heading, text, is_scored) for heading, text, is_scored in found if text is not None]
 
 
 def score_card(result: Result) -> Markup:
@@ -86,14 +108,12 @@ def score_card(result: Result) -> Markup:
     if result.scores is None:
         return render("templates/score_card.j2", scores=None, success=result.success)
     counts = Counter(found.kind.value for found in result.infractions)
-    passengers, leaderboard = result.metrics["passengers"], result.metrics["leaderboard"]
-    shown = {key: passengers[key] for key in FIGURES if key in passengers} if passengers else {}
     scores, scoring = result.scores, result.scoring
     return render(
         "templates/score_card.j2",
         scores=scores,
         success=result.success,
-        by_hand=is_by_hand(result),
+        remarks=result.remarks(),
         is_broken_off=result.is_broken_off,
         why_not_comparable=why_not_comparable(result),
         track=result.track,
@@ -105,10 +125,6 @@ def score_card(result: Result) -> Markup:
         penalties=[
             (kind, events.symbol(kind), counts[kind], penalty) for kind, penalty in scoring["penalties"].items()
         ],
-        leaderboard=leaderboard,
-        not_measured=sorted({words(kind) for each in (leaderboard or {}).values() for kind in each["not_measured"]}),
-        passengers=passengers,
-        passenger_figures=table(rows(shown)),
-        has_riders=bool(passengers) and any(visit.get("waiting") is not None for visit in passengers["service"]),
-        own=[(own.title, written(own.value, own.unit, own.digits), bool(own.penalties)) for own in result.own.values()],
+        cards=cards(result),
+        further=further(result),
     )

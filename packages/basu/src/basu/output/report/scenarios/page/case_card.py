@@ -6,7 +6,6 @@ import re
 import shlex
 from typing import TYPE_CHECKING, Any
 
-from basu.output.report.console import written
 from basu.output.report.plots.chart import share, times
 from basu.output.report.scenarios.drawing.picture import case_drawing
 from basu.output.report.scenarios.tally import LOOKS, counted
@@ -119,7 +118,7 @@ def _of_drive(result: Result | None) -> list[tuple[str, str]]:
         ("weather", meta["weather"]),
         *([("traffic", ", ".join(others))] if others else []),
         *([("driving score", f"{result.scores.driving:.3f}")] if result.scores is not None else []),
-        *((own.title, written(own.value, own.unit, own.digits)) for own in result.own.values()),
+        *((each.heading, text) for each in result.shown() if (text := each.text(result)) is not None),
     ]
 
 
