@@ -1,9 +1,9 @@
 """A filter of system calls, for sockets of the agent's process to which Landlock's rules of ports do not apply.
 
 Landlock checks ``connect`` and ``bind`` of plain TCP sockets. Other calls reach the same ports: sockets of MPTCP and
-SMC, raw packets, and calls by io_uring. So does a connection that begins with the first data (TCP Fast Open). The filter
-is a program of classic BPF for seccomp (https://docs.kernel.org/userspace-api/seccomp_filter.html), which needs no
-privilege. All processes that a filtered one starts inherit it, and none can take it off.
+SMC, raw packets, and calls by io_uring. So does a connection that begins with the first data (TCP Fast Open). The
+filter is a program of classic BPF for seccomp (https://docs.kernel.org/userspace-api/seccomp_filter.html), which needs
+no privilege. All processes that a filtered one starts inherit it, and none can take it off.
 """
 
 from __future__ import annotations
