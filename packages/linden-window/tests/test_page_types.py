@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 TYPESCRIPT = ROOT / ".venv" / "typescript" / "node_modules"
-PAGE = ROOT / "src" / "linden_window" / "page"
+PAGE = ROOT / "packages" / "linden-window" / "src" / "linden_window" / "page"
 
 
 def test_types_of_the_page(tmp_path: Path) -> None:

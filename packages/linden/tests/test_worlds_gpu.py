@@ -10,7 +10,7 @@ import pytest
 from linden.errors import UserError
 from linden.worlds import Worlds
 
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[3] / "tests"
 
 
 def test_the_kernels_of_the_gpu_step_worlds_as_the_processor_does() -> None:

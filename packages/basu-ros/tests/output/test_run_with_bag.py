@@ -138,12 +138,3 @@ def test_a_run_is_heard_on_ros_2_while_it_lasts(
     assert len(way.poses) > 25  # one a metre
     assert all(each.width > 100 for each in listener.received(clouds))
     listener.close()
-
-
-def test_without_rosbags_nothing_is_started(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "rosbags", None)
-    assert main(["run", "basic", "--rosbag", "--output", str(tmp_path)]) == 2
-    assert "pip install basu-ros" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())

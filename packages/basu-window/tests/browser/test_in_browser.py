@@ -65,7 +65,7 @@ def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: 
 
 @pytest.mark.slow
 def test_a_person_drives_by_keyboard_and_gamepad(browser: Browser, tmp_path: Path) -> None:
-    route = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
+    route = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
     words = ("run", "human", "--watch", "--routes", route, "--output", tmp_path)
     with started(*words) as (process, address):
         page = page_of(browser, address + "?flat")

@@ -39,7 +39,9 @@ from servers import RunningServer, running_server
 
 TOWN = one_road()
 WAY = way_along(TOWN)
-PACKAGED = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_scenarios.xml"
+PACKAGES = Path(__file__).parents[4] / "packages"
+PACKAGED = PACKAGES / "basu" / "src" / "basu" / "routes" / "linden_scenarios.xml"
+LINDEN = PACKAGES / "linden" / "src" / "linden" / "data" / "Linden.xodr"
 
 
 class Quiet(Scenario):
@@ -171,7 +173,7 @@ def test_an_unknown_type_names_the_known_types(tmp_path: Path) -> None:
 
 
 def test_the_packaged_route_has_scenarios_that_all_have_their_place() -> None:
-    text = next((PACKAGED.parents[2] / "linden" / "data").glob("Linden.xodr")).read_text(encoding="utf-8")
+    text = LINDEN.read_text(encoding="utf-8")
     town = carla.Map("Linden", text)
     (description,) = read_routes(PACKAGED)
     from basu.routing import plan  # noqa: PLC0415 - only here

@@ -46,7 +46,7 @@ def test_the_extract_that_comes_with_the_project_is_built_as_its_guide_has_it(
     extract, out = ROOT / "examples" / "maps" / "quarter.osm", tmp_path / "Quarter.xodr"
     guide = (ROOT / "docs" / "how-to" / "maps-import.md").read_text()
     assert "linden map build examples/maps/quarter.osm -o Quarter.xodr --facts quarter.geojson" in guide
-    assert "pip install linden-maps" in guide
+    assert "pip install 'linden-maps[elevation]'" in guide
     assert main(["map", "build", str(extract), "-o", str(out), "--facts", str(tmp_path / "quarter.geojson")]) == 0
     assert main(["map", "check", str(out)]) == 0
     assert "warning" not in capsys.readouterr().out

@@ -43,7 +43,7 @@ def _add_plugins(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     """Add the commands of all installed plugins.
 
     Raises:
-        UserError: the plugin that has the command ``typed`` is not installed.
+        UserError: the plugin that has the command ``typed`` is not installed, or cannot be loaded.
     """
     from importlib.metadata import entry_points  # noqa: PLC0415 - 20 ms that a server starts without
 
@@ -53,8 +53,16 @@ def _add_plugins(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
         raise UserError(
             f"`linden {typed}` needs {missing}, which is not installed; install it with: pip install {missing}"
         )
-    for _, plugin in sorted(found.items()):
-        plugin.load()(commands)
+    for name, plugin in sorted(found.items()):
+        try:
+            add = plugin.load()
+        except ImportError as error:
+            why = f"the plugin that brings `linden {name}` cannot be loaded ({error}); install it again"
+            if name == typed:
+                raise UserError(why) from error
+            print(f"linden: warning: {why}", file=sys.stderr)  # noqa: T201 - what a command says to its user
+            continue
+        add(commands)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
