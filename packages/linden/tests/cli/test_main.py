@@ -1,3 +1,12 @@
+"""Tests of ``linden.cli``."""
+
+from importlib.metadata import EntryPoint
+
+import pytest
+
+from linden.cli import main
+
+
 def test_a_plugin_that_cannot_be_loaded_is_named_and_takes_no_other_command_along(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
