@@ -309,6 +309,7 @@ def _nurbs(shape: NurbsSpec, place_of: Callable[[Position], Place]) -> tuple[lis
         heading = math.atan2(turn * (ny_m - y_m), turn * (nx_m - x_m))
         s_m += math.hypot(x_m - raw[-1][1], y_m - raw[-1][2]) if raw else 0.0
         raw.append((s_m, x_m, y_m, heading, t))
+    raw[0] = (*raw[0][:3], raw[1][3], raw[0][4])  # esmini gives the first point the heading of the second
     found = []
     current = 0
     for s_m, x_m, y_m, heading, t in raw:

@@ -176,7 +176,10 @@ class EventElement(RepeatedElement):
         self.priority = priority
 
     def start(self) -> None:
-        """Start unless the event runs already, or skips because another one of the manoeuvre runs."""
+        """Go to standby first; then start, unless it runs already, or skips because another one of the manoeuvre runs."""
+        if self.state is State.INIT:
+            self.change(State.STANDBY, "")
+            return
         assert self.parent is not None, "an event belongs to a manoeuvre"
         running = [one for one in self.parent.children if one.state is State.RUNNING]
         if self.state is State.RUNNING or (self.priority == "skip" and running):

@@ -135,13 +135,18 @@ def _pose(mover: Mover) -> Pose:
     return Pose(mover.name, place.x_m, place.y_m, place.z_m, place.h_rad, place.p_rad, place.r_rad, mover.speed_mps)
 
 
-def make_player(scenario: ScenarioFile) -> Player:
+def make_player(scenario: ScenarioFile, *, with_controllers: bool = True) -> Player:
     """Return a player of a scenario.
+
+    Args:
+        scenario: as its file has it.
+        with_controllers: whether controllers of other programs are refused; otherwise all entities play as written.
 
     Raises:
         ScenarioError: its road network cannot be read, or it asks for what is not supported.
     """
-    check_controllers(scenario)
+    if with_controllers:
+        check_controllers(scenario)
     network = read_network(scenario.road_file) if scenario.road_file is not None else Network(scenario.path)
     world = make_world(scenario, network)
     board, init = build(scenario, world)

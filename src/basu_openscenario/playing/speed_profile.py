@@ -112,7 +112,7 @@ def _single(first: Corner, last: Corner, rate: float, bounds: Bounds) -> list[St
     """Return the way to one speed: jerk to an acceleration, hold it, and jerk to none.
 
     The change of speed is k1²(1/2j1 - 1/2j0) + k1(T + k0/j0) - k0²/2j0. T is the time to go. k0 is the acceleration at
-    the begin, k1 the one that is held, and j0 and j1 are the jerks.
+    the begin, and k1 is the one that is held. The jerks are j0 and j1.
     """
     change, total_s = last.speed_mps - first.speed_mps, last.time_s - first.time_s
     rises = first.rate > rate or (first.rate == rate and change > 0)

@@ -180,6 +180,7 @@ class World:
         absolute = orientation.h_rad is not None and not orientation.relative
         h_rad = (orientation.h_rad or 0.0) + (0.0 if absolute else there.h_rad)
         place.set_world(there.x_m + dx, there.y_m + dy, h_rad)
+        place.lift(position.dz_m)
         return place
 
     def _lanes_beside(self, there: Place, position: RelativeLanePosition) -> Place:

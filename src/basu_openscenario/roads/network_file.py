@@ -121,7 +121,12 @@ def _section(node: Node, s_m: float, end_m: float) -> LaneSection:
             number, links = one.integer("id"), one.find("link")
             ends = [None if links is None else links.find(tag) for tag in ("predecessor", "successor")]
             before, after = (None if end is None else end.integer("id") for end in ends)
-            lanes[number] = Lane(number, one.text("type", "none"), _profile(one, "width", "sOffset"), before, after)
+            heights = tuple(
+                (height.number("sOffset", 0.0), height.number("inner"), height.number("outer"))
+                for height in one.children("height")
+            )
+            width = _profile(one, "width", "sOffset")
+            lanes[number] = Lane(number, one.text("type", "none"), width, heights, before, after)
     return LaneSection(s_m, end_m, lanes)
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu_openscenario.roads.network import Entry
-    from basu_openscenario.roads.road import Road
+    from basu_openscenario.roads.road import Road, RoadPoint
 
 SMALL = 1e-6
 MOST_ROADS = 8
@@ -99,6 +99,11 @@ class Place:
         self.attach()
         self._pose_from_world()
 
+    def lift(self, above_m: float) -> None:
+        """Stand above the road from now on."""
+        self.z_rel_m = above_m
+        self._pose_from_world()
+
     def attach(self) -> None:
         """Find road, s, t and lane of the point in the world; the point stays."""
         if not self.network.roads:
@@ -123,7 +128,7 @@ class Place:
     def _to_world(self) -> None:
         """Find the pose in the world from road and lane."""
         assert self.road is not None, "it is on a road"
-        point = self.road.point(self.s_m, self.t_m)
+        point = self._point()
         self.x_m, self.y_m = point.x_m, point.y_m
         if self.z_rel_m is not None:
             self.z_m = point.z_m + self.z_rel_m
@@ -134,10 +139,16 @@ class Place:
         """Lay a point of the world on the surface below it."""
         if self.road is None:
             return
-        point = self.road.point(self.s_m, self.t_m)
+        point = self._point()
         if self.z_rel_m is not None:
             self.z_m = point.z_m + self.z_rel_m
         self._tilt(point.h_rad, point.p_rad, point.r_rad)
+
+    def _point(self) -> RoadPoint:
+        """Return the point of the surface here; kerbs lift some lanes above the road."""
+        assert self.road is not None, "it is on a road"
+        above_m = self.road.section(self.s_m).height_m(self.lane, self.s_m, self.offset_m)
+        return self.road.point(self.s_m, self.t_m, above_m)
 
     def _tilt(self, h_rad: float, p_rad: float, r_rad: float) -> None:
         """Turn pitch and roll of the road into those of the body with its own heading."""

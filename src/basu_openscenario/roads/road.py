@@ -50,6 +50,8 @@ class Lane:
     number: int
     kind: str
     width: Profile
+    heights: tuple[tuple[float, float, float], ...] = ()
+    """From s on, in the section: how far its inner and its outer edge lie above the road; m."""
     predecessor: int | None = None
     successor: int | None = None
 
@@ -78,6 +80,21 @@ class LaneSection:
         side = 1.0 if number > 0 else -1.0
         inner = sum(self.width_m(one, s_m) for one in self._inner(number) if one in self.lanes)
         return side * (inner + 0.5 * self.width_m(number, s_m))
+
+    def height_m(self, number: int, s_m: float, offset_m: float) -> float:
+        """Return how far a point of a lane lies above the road: between its inner and its outer edge."""
+        lane = self.lanes.get(number)
+        if lane is None or not lane.heights:
+            return 0.0
+        at_m = s_m - self.s_m
+        inner, outer = next(
+            (one[1:] for one in reversed(lane.heights) if at_m >= one[0] - MARGIN_M), lane.heights[0][1:]
+        )
+        if abs(outer - inner) < MARGIN_M:
+            return inner
+        outwards = offset_m if number > 0 else -offset_m
+        share = 0.5 + outwards / max(self.width_m(number, s_m), MARGIN_M)
+        return inner + min(max(share, 0.0), 1.0) * (outer - inner)
 
     def centre_slope(self, number: int, s_m: float) -> float:
         """Return how the middle of a lane drifts to the left, in m a metre."""
@@ -154,8 +171,8 @@ class Road:
         """Return how far the middle of a lane is turned to the left of the reference line, in rad."""
         return math.atan(self.section(s_m).centre_slope(lane, s_m) + self.lane_offset.slope(s_m))
 
-    def point(self, s_m: float, t_m: float) -> RoadPoint:
-        """Return the point of the surface at ``s_m``, ``t_m`` to the left of the reference line."""
+    def point(self, s_m: float, t_m: float, above_m: float = 0.0) -> RoadPoint:
+        """Return the point of the surface at ``s_m``, ``t_m`` to the left of the reference line, or above it."""
         line = self.line(s_m)
         p = -math.atan(self.elevation.slope(s_m))
         r = self.superelevation.value(s_m)
@@ -164,7 +181,7 @@ class Road:
         return RoadPoint(
             line.x_m + cos * across - sin * side,
             line.y_m + sin * across + cos * side,
-            self.elevation.value(s_m) + math.cos(p) * math.sin(r) * t_m,
+            self.elevation.value(s_m) + math.cos(p) * (math.sin(r) * t_m + math.cos(r) * above_m),
             line.h_rad,
             p,
             r,
