@@ -126,11 +126,12 @@ def _free_road_distance(first: Mover, second: Mover, kind: str) -> float | None:
     if touch(first, second):
         return 0.0
     found: list[list[float]] = []
+    there = [_corner_place(second, corner) for corner in second.corners_m()]
     for corner in first.corners_m():
         here = _corner_place(first, corner)
         row = []
-        for other in second.corners_m():
-            way = here.to(_corner_place(second, other))
+        for other in there:
+            way = here.to(other)
             if way is None:
                 return None
             row.append(way.ds_m if kind == "longitudinal" else way.dt_m)

@@ -7,9 +7,10 @@ import itertools
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from basu_openscenario.roads.road import Road
 
@@ -30,6 +31,21 @@ SAMPLE_M = 2.0
 """Distance of the samples by which the nearest road is found, before it is refined."""
 OTHER_ROAD_M = 3.0
 """How much nearer a road must be than the present one, where no lane connects them."""
+
+
+CANDIDATES_M = 60.0
+"""Roads with a sample that is farther than the nearest one by less than this are compared exactly."""
+
+
+class Samples(NamedTuple):
+    """Points of the reference lines of all roads: (N, 3) of x, y and s in m, one road after the other."""
+
+    roads: list[str]
+    starts: NDArray[np.intp]
+    """The index of the first point of each road."""
+    points: NDArray[np.float64]
+    tree: Any
+    """A `scipy.spatial.cKDTree` of x and y."""
 
 
 class Connection(NamedTuple):
@@ -88,7 +104,7 @@ class Network:
     roads: dict[str, Road] = field(default_factory=dict)
     junctions: dict[str, Junction] = field(default_factory=dict)
     signals: dict[str, SignalSpec] = field(default_factory=dict)
-    _samples: tuple[list[str], NDArray[np.float64]] | None = None
+    _samples: Samples | None = None
 
     def exits(self, road: Road, lane: int, *, at_end: bool) -> list[Entry]:
         """Return where a lane goes on at an end of its road, in the order of the file.
@@ -174,21 +190,14 @@ class Network:
             near: the present road and s, which is kept where several roads overlap.
             lane: the present lane.
         """
-        numbers, samples = self._sampled()
-        gaps = np.hypot(samples[:, 1] - x_m, samples[:, 2] - y_m)
+        numbers, starts, samples, tree = self._sampled()
+        reach_m = float(tree.query((x_m, y_m))[0]) + CANDIDATES_M
+        close = np.array(tree.query_ball_point((x_m, y_m), reach_m), dtype=np.intp)
         best: tuple[float, Road, float, float] | None = None
-        order = np.argsort(gaps, kind="stable")
-        tried: set[int] = set()
-        limit = gaps[order[0]] + 60.0
-        for index in order[:4000]:
-            which = int(samples[index, 0])
-            if which in tried:
-                continue
-            if gaps[index] > limit:
-                break
-            tried.add(which)
+        gaps = np.hypot(samples[close, 0] - x_m, samples[close, 1] - y_m)
+        for which, index in _nearest_of_each(np.searchsorted(starts, close, side="right") - 1, gaps, close):
             road = self.roads[numbers[which]]
-            score, s_m, t_m = self._distance(road, float(samples[index, 3]), x_m, y_m, z_m)
+            score, s_m, t_m = self._distance(road, float(samples[index, 2]), x_m, y_m, z_m)
             if near is not None and road.number != near[0] and not self._follows(near[0], lane, road):
                 score += OTHER_ROAD_M
             elif near is not None and road.number != near[0]:
@@ -230,15 +239,26 @@ class Network:
             score += height_m if height_m > 2.0 else 0.0
         return score, s_m, t_m
 
-    def _sampled(self) -> tuple[list[str], NDArray[np.float64]]:
-        """Return all roads' numbers, and samples of their lines: index of the road, x, y and s in m."""
+    def _sampled(self) -> Samples:
+        """Return points of all roads' lines, with a tree that finds the points near another."""
         if self._samples is None:
-            numbers, rows = list(self.roads), []
-            for index, number in enumerate(numbers):
+            numbers, rows, starts = list(self.roads), [], []
+            for number in numbers:
                 road = self.roads[number]
+                starts.append(len(rows))
                 steps = max(2, int(road.length_m / SAMPLE_M) + 1)
                 for s_m in np.linspace(0.0, road.length_m, steps):
                     line = road.line(float(s_m))
-                    rows.append((index, line.x_m, line.y_m, float(s_m)))
-            self._samples = numbers, np.array(rows, dtype=np.float64)
+                    rows.append((line.x_m, line.y_m, float(s_m)))
+            points = np.array(rows, dtype=np.float64)
+            self._samples = Samples(numbers, np.array(starts), points, cKDTree(points[:, :2]))
         return self._samples
+
+
+def _nearest_of_each(
+    roads: NDArray[np.intp], gaps_m: NDArray[np.float64], points: NDArray[np.intp]
+) -> list[tuple[int, int]]:
+    """Return the index of each road with the nearest of its points, by distance."""
+    order = np.argsort(gaps_m, kind="stable")
+    _, first = np.unique(roads[order], return_index=True)
+    return [(int(roads[order[one]]), int(points[order[one]])) for one in sorted(first)]
