@@ -4,7 +4,8 @@ usage: esmini_compare.py --esmini PROGRAM FILE.xosc... [--step S] [--longest S] 
 
 Each file gets a line: played or refused and why, the greatest distance and angle over all entities and steps, and the
 greatest difference of the same change of state in steps. A file counts as agreed within 1 cm, 1 mrad and no step. Controllers are
-off in both: all entities play as the file is written.
+off in both: all entities play as the file is written. esmini then leaves out the actions that assign or activate one, so that
+their changes of state do not count here.
 """
 
 import argparse
@@ -21,7 +22,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from basu.errors import BasuError
-from basu_openscenario.playing.player import Change, Frame, make_player
+from basu_openscenario.playing.at_once import ControllerActivation, ControllerAssignment
+from basu_openscenario.playing.player import Change, Frame, Player, make_player
 from basu_openscenario.reading.scenario_file import read_scenario
 
 CLOSE_M, CLOSE_RAD = 0.01, 0.001
@@ -145,7 +147,7 @@ def compare(program: Path, file: Path, step_s: float, longest_s: float) -> Judge
     if not rows:
         return Judged(played=True, why="esmini wrote no poses", own_s=own_s, esmini_s=esmini_s)
     distance_m, angle_rad, where = _apart(frames, rows, step_s)
-    events, steps, lost = _events(player.changes, changes, step_s, longest_s)
+    events, steps, lost = _events(_without_controllers(player), changes, step_s, longest_s)
     ends = frames[-1].time_s, min(max(rows) * step_s, longest_s)
     return Judged(True, "", distance_m, angle_rad, where, events, steps, lost, own_s, esmini_s, *ends)
 
@@ -169,6 +171,13 @@ def _apart(frames: list[Frame], rows: dict[int, dict[str, Row]], step_s: float) 
                 where = f"{pose.name} at {frame.time_s:.2f} s"
             worst_m, worst_rad = max(worst_m, gap_m), max(worst_rad, gap_rad)
     return worst_m, worst_rad, where
+
+
+def _without_controllers(player: Player) -> list[Change]:
+    """Return the changes of state of all elements but the actions on controllers."""
+    kinds = (ControllerAssignment, ControllerActivation)
+    left_out = {element.path for element in player.board.all() if isinstance(element, kinds)}
+    return [change for change in player.changes if change.path not in left_out]
 
 
 def _events(

@@ -1,10 +1,11 @@
-"""Private actions that are done at once: places, routes, visibility, controllers and lights."""
+"""Private actions that are done at once: places, routes, visibility, controllers; and lights."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu_openscenario.playing.running_action import ALONG, BOTH, AtOnce
+from basu_openscenario.playing.running_action import ALONG, BOTH, AtOnce, RunningAction
+from basu_openscenario.playing.transition import SMALL
 
 if TYPE_CHECKING:
     from basu_openscenario.playing.mover import Mover
@@ -101,14 +102,32 @@ class ControllerActivation(AtOnce):
         """Change nothing: the default controller moves the entity as the storyboard says."""
 
 
-class LightChange(AtOnce):
-    """Switches a light."""
+LIGHT_GROUPS = {
+    "indicatorLeft": {"indicators"},
+    "indicatorRight": {"indicators"},
+    "warningLights": {"indicators"},
+    "fogLights": {"fogLightsFront", "fogLightsRear"},
+}
+"""Lights that exclude each other; other lights exclude only themselves."""
+
+
+class LightChange(RunningAction):
+    """Switches a light; a flashing light flashes until an action on the same or an excluded light begins."""
 
     def __init__(self, name: str, world: World, mover: Mover, action: LightStateAction) -> None:
         """Take the action as its file has it."""
         super().__init__(name, world, mover)
         self.action = action
+        self.domains = frozenset(LIGHT_GROUPS.get(action.light, {action.light}))
+        self.lasted_s = 0.0
 
     def prepare(self) -> None:
         """Note the light's mode."""
+        self.lasted_s = 0.0
         self.mover.lights[self.action.light] = self.action.mode
+
+    def work(self, step_s: float) -> bool:
+        """Wait for the end of the transition."""
+        is_over = self.lasted_s > self.action.transition_s - SMALL and self.action.mode != "flashing"
+        self.lasted_s += step_s
+        return is_over

@@ -109,7 +109,7 @@ class Mover:
         place = self.place
         if place.road is None:
             return True
-        right, left = place.road.section(place.s_m).edges_m(place.s_m)
+        right, left = place.road.section(place.s_m).paved_edges_m(place.s_m)
         from_centre = place.t_m - place.road.lane_offset.value(place.s_m)
         return not right <= from_centre <= left
 

@@ -133,10 +133,10 @@ class World:
         where = route_place(self.network, self.waypoints(position.route), position.s_m)
         if position.lane is None:
             place.set_track(where.road_number, where.s_m, position.t_m or 0.0)
-        else:
-            self._check_lane(where.road_number, position.lane, where.s_m)
-            place.set_lane(where.road_number, position.lane, where.s_m, position.offset_m)
-        return self._orient(place, position.orientation, 0.0 if where.is_forward else math.pi)
+            return self._orient(place, position.orientation, 0.0 if where.is_forward else math.pi)
+        self._check_lane(where.road_number, position.lane, where.s_m)
+        place.set_lane(where.road_number, position.lane, where.s_m, position.offset_m)
+        return self._orient(place, position.orientation, math.pi if place.driving_sign() < 0.0 else 0.0)
 
     def waypoints(self, route: RouteSpec) -> list[Place]:
         """Return the places that a route passes."""
@@ -172,16 +172,15 @@ class World:
             moved.move(position.ds_m, direction="road", actual=False)
             moved.set_track(moved.road_number, moved.s_m, moved.t_m + position.dt_m)
             return self._orient(moved, position.orientation, 0.0)
-        dx, dy = position.dx_m, position.dy_m
+        dx, dy, dz = position.dx_m, position.dy_m, position.dz_m or 0.0
         if isinstance(position, RelativeObjectPosition):
-            cos, sin = math.cos(there.h_rad), math.sin(there.h_rad)
-            dx, dy = cos * dx - sin * dy, sin * dx + cos * dy
+            dx, dy, dz = there.rotated(dx, dy, dz)
         orientation = position.orientation
         absolute = orientation.h_rad is not None and not orientation.relative
         h_rad = (orientation.h_rad or 0.0) + (0.0 if absolute else there.h_rad)
-        place.set_world(there.x_m + dx, there.y_m + dy, h_rad)
-        place.lift(position.dz_m)
-        return place
+        z_m = None if position.dz_m is None else there.z_m + dz
+        place.set_world(there.x_m + dx, there.y_m + dy, h_rad, z_m)
+        return self._tilt(place, orientation)
 
     def _lanes_beside(self, there: Place, position: RelativeLanePosition) -> Place:
         """Return a place by lanes and metres from an entity."""

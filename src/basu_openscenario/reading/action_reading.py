@@ -267,7 +267,8 @@ def _lights(node: Node, _: Catalogs) -> PrivateAction:
     """Return a ``LightStateAction``."""
     light = node.child("LightType").only()
     name = light.text("vehicleLightType" if light.tag == "VehicleLight" else "userDefinedLightType")
-    return LightStateAction(name, node.child("LightState").text("mode"))
+    mode = node.child("LightState").choice("mode", ("on", "off", "flashing"))
+    return LightStateAction(name, mode, node.number("transitionTime", 0.0))
 
 
 PRIVATE_ACTIONS: dict[str, Callable[[Node, Catalogs], PrivateAction]] = {

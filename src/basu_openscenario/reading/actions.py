@@ -197,10 +197,11 @@ class ActivateControllerAction:
 
 @dataclass(frozen=True, slots=True)
 class LightStateAction:
-    """Switch a light of the entity."""
+    """Switch a light of the entity, over ``transition_s``; a flashing light goes on until another action ends it."""
 
     light: str
     mode: str
+    transition_s: float = 0.0
 
 
 PrivateAction = (

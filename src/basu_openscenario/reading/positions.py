@@ -75,7 +75,8 @@ class RelativeWorldPosition:
     entity: str
     dx_m: float
     dy_m: float
-    dz_m: float
+    dz_m: float | None
+    """Above the entity; None: on the road."""
     orientation: Orientation = Orientation()
 
 
@@ -86,7 +87,8 @@ class RelativeObjectPosition:
     entity: str
     dx_m: float
     dy_m: float
-    dz_m: float
+    dz_m: float | None
+    """Above the entity; None: on the road."""
     orientation: Orientation = Orientation()
 
 

@@ -135,8 +135,7 @@ def _junction(node: Node) -> Junction:
     found = []
     for one in node.children("connection"):
         links = {link.integer("from"): link.integer("to") for link in one.children("laneLink")}
-        if one.has("incomingRoad") and one.has("connectingRoad"):
-            found.append(
-                Connection(one.text("incomingRoad"), one.text("connectingRoad"), one.text("contactPoint"), links)
-            )
+        into = "linkedRoad" if one.has("linkedRoad") else "connectingRoad"  # direct junctions have no connecting roads
+        if one.has("incomingRoad") and one.has(into):
+            found.append(Connection(one.text("incomingRoad"), one.text(into), one.text("contactPoint"), links))
     return Junction(node.text("id"), tuple(found))

@@ -316,6 +316,15 @@ class Place:
         same = (at_start == other.is_forward) == ahead
         return Difference(ds_m, dt_m, lanes, same, opposite)
 
+    def rotated(self, ahead_m: float, left_m: float, up_m: float) -> tuple[float, float, float]:
+        """Return a vector in this place's axes as a vector of the world, after roll, pitch and heading."""
+        cos_r, sin_r = math.cos(self.r_rad), math.sin(self.r_rad)
+        y, z = cos_r * left_m - sin_r * up_m, sin_r * left_m + cos_r * up_m
+        cos_p, sin_p = math.cos(self.p_rad), math.sin(self.p_rad)
+        x, z = cos_p * ahead_m + sin_p * z, -sin_p * ahead_m + cos_p * z
+        cos, sin = math.cos(self.h_rad), math.sin(self.h_rad)
+        return cos * x - sin * y, sin * x + cos * y, z
+
     def seen_from(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Return a point of the world in this place's axes: m ahead and m to the left."""
         dx, dy = x_m - self.x_m, y_m - self.y_m

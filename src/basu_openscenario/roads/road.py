@@ -111,6 +111,15 @@ class LaneSection:
         left = sum(self.width_m(number, s_m) for number in self.lanes if number > 0)
         return right, left
 
+    def paved_edges_m(self, s_m: float) -> tuple[float, float]:
+        """Return the outer edges of the outermost lanes with a type other than ``none``: m to the left of lane 0."""
+        paved = [number for number, lane in self.lanes.items() if lane.kind != "none" and number]
+        right, left = min([0, *paved]), max([0, *paved])
+        return (
+            self.centre_m(right, s_m) - 0.5 * self.width_m(right, s_m),
+            self.centre_m(left, s_m) + 0.5 * self.width_m(left, s_m),
+        )
+
 
 class Link(NamedTuple):
     """What is at an end of a road: a road with its contact point, or a junction."""
