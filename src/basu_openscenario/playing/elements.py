@@ -176,7 +176,7 @@ class EventElement(RepeatedElement):
         self.priority = priority
 
     def start(self) -> None:
-        """Go to standby first; then start, unless it runs already, or skips because another one of the manoeuvre runs."""
+        """Go to standby first; then start, unless it runs already, or another one runs and it skips."""
         if self.state is State.INIT:
             self.change(State.STANDBY, "")
             return

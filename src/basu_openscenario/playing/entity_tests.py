@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from basu_openscenario.playing.condition_tests import compared
-from basu_openscenario.playing.relations import distance_m, point_distance_m, time_to_collision_s, touch
+from basu_openscenario.playing.relations import distance_m, position_distance_m, time_to_collision_s, touch
 from basu_openscenario.playing.transition import SMALL
 from basu_openscenario.roads.network import DRIVING
 from basu_openscenario.roads.place import wrapped
@@ -107,7 +107,9 @@ def _time_to_collision(mover: Mover, measure: Measure, world: World) -> bool | N
     else:
         assert measure.position is not None, "it has a position"
         there = world.place_of(measure.position, mover)
-        gap = point_distance_m(mover, there, system=measure.system, kind=measure.distance)
+        gap = position_distance_m(
+            mover, there, system=measure.system, kind=measure.distance, freespace=measure.freespace
+        )
         gap = FAR_M if gap is None else gap
         moves = abs(gap) >= SMALL and abs(mover.speed_mps) >= SMALL
         time_s = gap / mover.speed_mps if moves else -1.0
@@ -170,7 +172,9 @@ def _distance(mover: Mover, measure: Measure, world: World) -> bool | None:
     else:
         assert measure.position is not None, "it has a position"
         there = world.place_of(measure.position, mover)
-        gap = point_distance_m(mover, there, system=measure.system, kind=measure.distance)
+        gap = position_distance_m(
+            mover, there, system=measure.system, kind=measure.distance, freespace=measure.freespace
+        )
     return compared(FAR_M if gap is None else abs(gap), measure.rule, measure.value)
 
 

@@ -55,13 +55,20 @@ def touch(first: Mover, second: Mover) -> bool:
 
 def _edge_distance(point: tuple[float, float], corners: Corners) -> float:
     """Return the distance of a point from the edges of a box."""
-    best = math.inf
+    return math.hypot(*_from_edges(point, corners))
+
+
+def _from_edges(point: tuple[float, float], corners: Corners) -> tuple[float, float]:
+    """Return the vector in the world from the nearest point of the edges of a box to a point."""
+    best = (math.inf, math.inf)
     for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]], strict=True):
         dx, dy = bx - ax, by - ay
         length2 = dx * dx + dy * dy
         share = 0.0 if length2 < SMALL * SMALL else ((point[0] - ax) * dx + (point[1] - ay) * dy) / length2
         share = min(max(share, 0.0), 1.0)
-        best = min(best, math.hypot(point[0] - ax - share * dx, point[1] - ay - share * dy))
+        found = (point[0] - ax - share * dx, point[1] - ay - share * dy)
+        if math.hypot(*found) < math.hypot(*best):
+            best = found
     return best
 
 
@@ -90,7 +97,9 @@ def distance_m(first: Mover, second: Mover, *, system: str, kind: str, freespace
     if over_air:
         return free_distance_m(first, second) * sign(along)
     if system in {"road", "lane"}:
-        return _free_road_distance(first, second, kind)
+        if touch(first, second):
+            return 0.0
+        return _free_road_distance(first, [_corner_place(second, corner) for corner in second.corners_m()], kind)
     return along if kind == "longitudinal" else aside
 
 
@@ -121,12 +130,28 @@ def _along_trajectory(first: Mover, there: Place, target: Mover | None, kind: st
     return s_m - follower.s_m if kind == "longitudinal" else beside_m
 
 
-def _free_road_distance(first: Mover, second: Mover, kind: str) -> float | None:
-    """Return the distance between boxes along or across the road, by their corners."""
-    if touch(first, second):
+def position_distance_m(first: Mover, there: Place, *, system: str, kind: str, freespace: bool) -> float | None:
+    """Return the signed distance from an entity to a place; None where no road leads there.
+
+    ``freespace`` measures from the box of the entity instead of its reference point.
+    """
+    if not freespace:
+        return point_distance_m(first, there, system=system, kind=kind)
+    ahead, left = first.place.seen_from(there.x_m, there.y_m)
+    box = first.entity.box
+    if abs(ahead - box.centre_m[0]) <= box.length_m / 2.0 and abs(left - box.centre_m[1]) <= box.width_m / 2.0:
         return 0.0
+    if kind in {"longitudinal", "lateral"} and system in {"road", "lane"}:
+        return _free_road_distance(first, [there], kind)
+    ahead, left = first.along((*_from_edges((there.x_m, there.y_m), first.corners_m()), 0.0))
+    if kind in {"longitudinal", "lateral"}:
+        return ahead if kind == "longitudinal" else left
+    return math.hypot(ahead, left) * sign(ahead)
+
+
+def _free_road_distance(first: Mover, there: list[Place], kind: str) -> float | None:
+    """Return the distance from the corners of a box to places along or across the road; 0 between two corners."""
     found: list[list[float]] = []
-    there = [_corner_place(second, corner) for corner in second.corners_m()]
     for corner in first.corners_m():
         here = _corner_place(first, corner)
         row = []
@@ -136,9 +161,9 @@ def _free_road_distance(first: Mover, second: Mover, kind: str) -> float | None:
                 return None
             row.append(way.ds_m if kind == "longitudinal" else way.dt_m)
         found.append(row)
-    for row in found:
-        if len({sign(value) for value in row}) > 1:
-            return 0.0
+    rows = found if len(there) > 1 else [[value for row in found for value in row]]
+    if any(len({sign(value) for value in row}) > 1 for row in rows):
+        return 0.0
     return min((value for row in found for value in row), key=abs)
 
 

@@ -180,7 +180,11 @@ class World:
         h_rad = (orientation.h_rad or 0.0) + (0.0 if absolute else there.h_rad)
         z_m = None if position.dz_m is None else there.z_m + dz
         place.set_world(there.x_m + dx, there.y_m + dy, h_rad, z_m)
-        return self._tilt(place, orientation)
+        if orientation.p_rad or orientation.r_rad or not there.on_surface:
+            place.on_surface = False
+            place.p_rad = (orientation.p_rad or 0.0) + (0.0 if absolute else there.p_rad)
+            place.r_rad = (orientation.r_rad or 0.0) + (0.0 if absolute else there.r_rad)
+        return place
 
     def _lanes_beside(self, there: Place, position: RelativeLanePosition) -> Place:
         """Return a place by lanes and metres from an entity."""

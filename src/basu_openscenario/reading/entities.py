@@ -90,6 +90,8 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
     described = resolved(node.only("ObjectController", "MonitorDeclarations"), catalogs)
     if described.tag not in KINDS:
         raise described.fault(f"<{described.tag}> is not supported as an entity; use one of {', '.join(KINDS)}")
+    if (trailer := described.find("Trailer")) is not None:
+        raise trailer.fault("<Trailer> is not supported; let the trailer be an entity of its own, or remove it")
     kind = KINDS[described.tag]
     category = described.text(f"{'miscObject' if kind == 'miscellaneous' else kind}Category", "")
     holders = [one for one in node.children("ObjectController") if any(True for _ in one.children())]

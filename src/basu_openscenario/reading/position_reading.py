@@ -99,14 +99,22 @@ def _relative_road(node: Node, _: Catalogs) -> Position:
 def _relative_world(node: Node, _: Catalogs) -> Position:
     """Return a ``RelativeWorldPosition``."""
     return RelativeWorldPosition(
-        node.text("entityRef"), node.number("dx"), node.number("dy"), node.number("dz") if node.has("dz") else None, _orientation(node)
+        node.text("entityRef"),
+        node.number("dx"),
+        node.number("dy"),
+        node.number("dz") if node.has("dz") else None,
+        _orientation(node),
     )
 
 
 def _relative_object(node: Node, _: Catalogs) -> Position:
     """Return a ``RelativeObjectPosition``."""
     return RelativeObjectPosition(
-        node.text("entityRef"), node.number("dx"), node.number("dy"), node.number("dz") if node.has("dz") else None, _orientation(node)
+        node.text("entityRef"),
+        node.number("dx"),
+        node.number("dy"),
+        node.number("dz") if node.has("dz") else None,
+        _orientation(node),
     )
 
 
