@@ -9,8 +9,9 @@ import difflib
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from basu import plugins
 from basu.errors import ScenarioError
 from basu.scenarios.case_xml import read_cases
 from basu.scenarios.class_file import own_scenarios, users_scenarios
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from basu.scenarios.variation import Variation
     from basu.scenarios.xml_elements import Case
 
+OWN_SUFFIXES = (".py", ".xml")  # of files that hold scenarios; plugins read others
 LIBRARY = Path(__file__).parent / "library"  # the cases that come with BASU: <group>/<type in snake case>.xml
 ALL = "all"
 GROUP = "group:"  # before a group's name where a type is called the same
@@ -175,6 +177,27 @@ class Library:
         return f"{hint} `basu scenario list` shows what there is"
 
 
+class ScenarioFile(NamedTuple):
+    """The classes and the cases in a file of a plugin's kind."""
+
+    scenarios: Sequence[type[Scenario]]
+    cases: tuple[Case, ...]
+
+
+class ScenarioReader(Protocol):
+    """A reader of scenario files, the entry point of a plugin that has the file's suffix as its name: "xosc".
+
+    Its classes have the parameters ``ego`` (the entity of the ego) and ``driver`` (``agent`` or ``file``).
+    """
+
+    def __call__(self, path: Path) -> ScenarioFile:
+        """Return the classes and the cases of a file.
+
+        Raises:
+            ScenarioError: it cannot be read.
+        """
+
+
 def open_library(files: Iterable[str | Path] = ()) -> Library:
     """BASU's own, and the classes and cases of a user's files; each file brings the other of its stem.
 
@@ -188,13 +211,28 @@ def open_library(files: Iterable[str | Path] = ()) -> Library:
         stem = path.resolve().with_suffix("")
         if stem in by_stem:
             continue
-        classes, instances = path.with_suffix(".py"), path.with_suffix(".xml")
-        users = users_scenarios(classes) if path == classes or classes.is_file() else []
-        _check_names(users, scenarios, classes)
-        scenarios += users
-        by_stem[stem] = read_cases(instances) if path == instances or instances.is_file() else ()
+        found = _read_file(path)
+        _check_names(found.scenarios, scenarios, path.with_suffix(".py") if path.suffix in OWN_SUFFIXES else path)
+        scenarios += found.scenarios
+        by_stem[stem] = found.cases
         cases += by_stem[stem]
     return Library(scenarios=tuple(scenarios), cases=tuple(cases), by_stem=by_stem)
+
+
+def _read_file(path: Path) -> ScenarioFile:
+    """Return the classes and the cases of a user's file; a plugin reads what is neither .xml nor .py.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    if path.suffix not in OWN_SUFFIXES:
+        reader: ScenarioReader = plugins.load(plugins.SCENARIO_FILES, path.suffix[1:], f"a file {path.name}")
+        return reader(path)
+    classes, instances = path.with_suffix(".py"), path.with_suffix(".xml")
+    return ScenarioFile(
+        users_scenarios(classes) if path == classes or classes.is_file() else [],
+        read_cases(instances) if path == instances or instances.is_file() else (),
+    )
 
 
 def cases_of(wanted: str | Sequence[str], files: Sequence[str | Path] = ()) -> tuple[Playable, ...]:
@@ -242,7 +280,23 @@ def file_in(word: str) -> tuple[Path | None, str]:
     """The file that a word names, FILE.xml, FILE.py or FILE.py:Class, and the class; None where it names no file."""
     text, _, class_name = word.partition(":") if ".py:" in word else (word, "", "")
     path = Path(text)
-    return (path, class_name) if path.suffix in {".py", ".xml"} else (None, "")
+    return (path, class_name) if _is_scenario_file(path.suffix) else (None, "")
+
+
+def _is_scenario_file(suffix: str) -> bool:
+    """Return whether files with this suffix hold scenarios, for BASU or for a plugin."""
+    return suffix in OWN_SUFFIXES or is_of_plugin(suffix)
+
+
+def is_of_plugin(suffix: str) -> bool:
+    """Return whether a plugin reads files with this suffix: one that is installed, or one of this project."""
+    name, own = suffix.removeprefix("."), plugins.DISTRIBUTIONS[plugins.SCENARIO_FILES]
+    return name != "" and (name in own or plugins.is_installed(plugins.SCENARIO_FILES, name))
+
+
+def is_led_by_file(words: Sequence[str]) -> bool:
+    """Return whether all words name files of a plugin, in which an ego without an agent moves as the file has it."""
+    return all(is_of_plugin(Path(word).suffix) for word in words)
 
 
 def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
@@ -269,7 +323,8 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
     ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()
     unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
-    return Playable(case, scenario, read_values(*narrowed(scenario.parameters, given)), unread)
+    values = read_values(*narrowed(scenario.parameters, given))
+    return Playable(scenario.settled(case, values), scenario, values, unread)
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:

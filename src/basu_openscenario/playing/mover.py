@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu_openscenario.roads.place import wrapped
 
@@ -23,6 +23,16 @@ class Follower:
 
     curve: Curve
     s_m: float = 0.0
+
+
+class Given(NamedTuple):
+    """A motion that is not the scenario's own: m, rad and m/s in OpenDRIVE's axes."""
+
+    x_m: float
+    y_m: float
+    h_rad: float
+    vx_mps: float
+    vy_mps: float
 
 
 @dataclass(slots=True)
@@ -48,6 +58,8 @@ class Mover:
     speed_is_set: bool = False
     """Whether its speed was set or used in this step, so that it does not follow from the motion."""
     teleported: bool = False
+    given: Given | None = None
+    """The motion by an agent; None where the scenario moves the entity."""
     before: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """x, y, z and heading at the end of the step before."""
 
@@ -75,6 +87,16 @@ class Mover:
         """Take the present pose as that of the step before."""
         place = self.place
         self.before = (place.x_m, place.y_m, place.z_m, place.h_rad)
+
+    def follow(self, given: Given, step_s: float) -> None:
+        """Take a motion that was given at the begin of a step: go on with its velocity, whatever actions ask for."""
+        x_m, y_m = given.x_m + given.vx_mps * step_s, given.y_m + given.vy_mps * step_s
+        self.given = given._replace(x_m=x_m, y_m=y_m)
+        self.place.set_world(x_m, y_m, given.h_rad)
+        along_mps = given.vx_mps * math.cos(given.h_rad) + given.vy_mps * math.sin(given.h_rad)
+        self.set_speed(along_mps)
+        self.before = (given.x_m, given.y_m, self.place.z_m, given.h_rad)
+        self.teleported = False
 
     def settle(self, step_s: float) -> None:
         """Derive velocity, acceleration and distance from the movement of a step, and begin the next one."""

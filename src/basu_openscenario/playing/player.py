@@ -105,7 +105,9 @@ class Player:
         return True
 
     def _drive(self, mover: Mover, step_s: float) -> None:
-        """Move an entity along its lane, unless an action has moved it in this step."""
+        """Move an entity along its lane, unless an action has moved it in this step, or an agent drives it."""
+        if mover.given is not None:
+            mover.follow(mover.given, step_s)
         if abs(mover.speed_mps) > SMALL and not mover.moved_along and mover.place.road is not None:
             mover.place.move(mover.speed_mps * step_s)
             mover.moved_along = mover.speed_is_set = True
@@ -135,18 +137,19 @@ def _pose(mover: Mover) -> Pose:
     return Pose(mover.name, place.x_m, place.y_m, place.z_m, place.h_rad, place.p_rad, place.r_rad, mover.speed_mps)
 
 
-def make_player(scenario: ScenarioFile, *, with_controllers: bool = True) -> Player:
+def make_player(scenario: ScenarioFile, *, with_controllers: bool = True, ego: str | None = None) -> Player:
     """Return a player of a scenario.
 
     Args:
         scenario: as its file has it.
         with_controllers: whether controllers of other programs are refused; otherwise all entities play as written.
+        ego: the entity that an agent drives; its controllers do not count.
 
     Raises:
         ScenarioError: its road network cannot be read, or it asks for what is not supported.
     """
     if with_controllers:
-        check_controllers(scenario)
+        check_controllers(scenario, ego)
     network = read_network(scenario.road_file) if scenario.road_file is not None else Network(scenario.path)
     world = make_world(scenario, network)
     board, init = build(scenario, world)

@@ -57,6 +57,8 @@ class Entity:
     properties: dict[str, str] = field(default_factory=dict)
     controllers: tuple[Controller, ...] = ()
     line: str = ""
+    model: str = ""
+    """The name that the file gives the body, such as a blueprint of CARLA."""
 
 
 def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], dict[str, tuple[str, ...]]]:
@@ -90,7 +92,9 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
     described = resolved(node.only("ObjectController", "MonitorDeclarations"), catalogs)
     if described.tag not in KINDS:
         raise described.fault(f"<{described.tag}> is not supported as an entity; use one of {', '.join(KINDS)}")
-    if (trailer := described.find("Trailer")) is not None:
+    trailer = described.find("Trailer")
+    reference = None if trailer is None else trailer.find("TrailerRef")
+    if trailer is not None and (reference is None or reference.text("entityRef", "")):
         raise trailer.fault("<Trailer> is not supported; let the trailer be an entity of its own, or remove it")
     kind = KINDS[described.tag]
     category = described.text(f"{'miscObject' if kind == 'miscellaneous' else kind}Category", "")
@@ -105,6 +109,7 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
         _properties(described),
         tuple(controllers),
         f"{node.path}:{node.element.sourceline}",
+        described.text("name", ""),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from basu.errors import ScenarioError
@@ -12,6 +13,40 @@ if TYPE_CHECKING:
 
     from basu_openscenario.reading.expressions import Scope
     from basu_openscenario.reading.xml_node import Node
+
+WIDEST = 1e6
+"""The range of a number without constraints, to both sides."""
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """A declared parameter: its type, its default, and the range that its constraints leave to a number."""
+
+    kind: str
+    value: str
+    low: float = -WIDEST
+    high: float = WIDEST
+
+
+def declarations(node: Node) -> dict[str, Declaration]:
+    """Return the parameters that an element declares, by name."""
+    block = node.find("ParameterDeclarations")
+    found = {}
+    for one in () if block is None else block.children("ParameterDeclaration"):
+        low, high = -WIDEST, WIDEST
+        for limit in (
+            limit for group in one.children("ConstraintGroup") for limit in group.children("ValueConstraint")
+        ):
+            rule = limit.text("rule")
+            if rule in {"greaterOrEqual", "greaterThan"}:
+                low = max(low, limit.number("value"))
+            elif rule in {"lessOrEqual", "lessThan"}:
+                high = min(high, limit.number("value"))
+        name = one.text("name")
+        value = node.scope.values.get(name, one.text("value", ""))
+        found[name] = Declaration(one.text("parameterType"), value, low, high)
+    return found
+
 
 TYPES = ("boolean", "dateTime", "double", "int", "integer", "string", "unsignedInt", "unsignedShort")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from basu_openscenario.reading.catalogs import catalogs_of
 from basu_openscenario.reading.entities import Entity, read_entities
-from basu_openscenario.reading.parameters import TYPES, check_given, check_type, declared
+from basu_openscenario.reading.parameters import TYPES, Declaration, check_given, check_type, declarations, declared
 from basu_openscenario.reading.references import check_references
 from basu_openscenario.reading.storyboard import Storyboard, read_storyboard
 from basu_openscenario.reading.xml_node import read_xml
@@ -49,6 +49,7 @@ class ScenarioFile:
     version: str
     description: str
     parameters: dict[str, str]
+    declarations: dict[str, Declaration]
     variables: dict[str, str]
     road_file: Path | None
     signal_controllers: tuple[SignalController, ...]
@@ -84,6 +85,7 @@ def read_scenario(path: Path, given: Mapping[str, str] | None = None) -> Scenari
         version,
         root.child("FileHeader").text("description", ""),
         dict(scope.values),
+        declarations(root),
         _variables(root),
         None if network is None else _road_file(network),
         () if network is None else _signal_controllers(network),
