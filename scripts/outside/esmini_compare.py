@@ -3,9 +3,9 @@
 usage: esmini_compare.py --esmini PROGRAM FILE.xosc... [--step S] [--longest S] [--table FILE.md]
 
 Each file gets a line: played or refused and why, the greatest distance and angle over all entities and steps, and the
-greatest difference of the same change of state in steps. A file counts as agreed within 1 cm, 1 mrad and no step. Controllers are
-off in both: all entities play as the file is written. esmini then leaves out the actions that assign or activate one, so that
-their changes of state do not count here.
+greatest difference of the same change of state in steps. A file counts as agreed within 1 cm, 1 mrad and no step.
+Controllers are off in both: all entities play as the file is written. esmini then leaves out the actions that assign or
+activate one, so that their changes of state do not count here.
 """
 
 import argparse

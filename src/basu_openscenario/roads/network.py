@@ -242,7 +242,8 @@ class Network:
     def _sampled(self) -> Samples:
         """Return points of all roads' lines, with a tree that finds the points near another."""
         if self._samples is None:
-            numbers, rows, starts = list(self.roads), [], []
+            numbers, starts = list(self.roads), []
+            rows: list[tuple[float, float, float]] = []
             for number in numbers:
                 road = self.roads[number]
                 starts.append(len(rows))
