@@ -73,7 +73,7 @@ class Scenario(ABC):
 
     @classmethod
     def settled(cls, case: Case, values: Mapping[str, Value]) -> Case:
-        """Return the case with its place and its ego; a class whose places depend on its values overrides this."""
+        """Return the case with its place and its ego. A class overrides this if its places depend on its values."""
         del values
         return case
 

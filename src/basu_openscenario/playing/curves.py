@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.errors import ScenarioError
 from basu_openscenario.playing.transition import SMALL, sign
+from basu_openscenario.reading.position_reading import LONGEST_TRAJECTORY_M
 from basu_openscenario.reading.positions import ClothoidSpec, ClothoidSplineSpec, NurbsSpec, PolylineSpec
 from basu_openscenario.roads.geometry import Clothoid
 from basu_openscenario.roads.place import Place, wrapped
@@ -293,6 +294,8 @@ def _nurbs(shape: NurbsSpec, place_of: Callable[[Position], Place]) -> tuple[lis
     """Return points of a NURBS curve about a metre apart, with times between those of the control points."""
     places = [place_of(point.position) for point in shape.points]
     length_m = sum(math.hypot(b.x_m - a.x_m, b.y_m - a.y_m) for a, b in pairwise(places))
+    if length_m > LONGEST_TRAJECTORY_M:
+        raise ScenarioError(f"a NURBS of {length_m:g} m is not supported; at most {LONGEST_TRAJECTORY_M:g} m are")
     steps = 1 + int(length_m / STEP_M)
     last = shape.knots[-1]
     timed = all(point.time_s is not None for point in shape.points)

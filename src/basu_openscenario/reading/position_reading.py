@@ -179,6 +179,24 @@ def _polyline(node: Node, catalogs: Catalogs) -> PolylineSpec:
     return PolylineSpec(found)
 
 
+LONGEST_TRAJECTORY_M = 1e5
+"""A trajectory above this is refused: it is cut into pieces of a metre."""
+
+
+def _length(node: Node) -> float:
+    """Return the length of a curve in m.
+
+    Raises:
+        ScenarioError: it is negative, or too large.
+    """
+    length_m = node.number("length")
+    if not 0.0 <= length_m <= LONGEST_TRAJECTORY_M:
+        raise node.fault(
+            f"a curve of {length_m:g} m is not supported; its length must be from 0 to {LONGEST_TRAJECTORY_M:g} m"
+        )
+    return length_m
+
+
 def _clothoid(node: Node, catalogs: Catalogs) -> ClothoidSpec:
     """Return a ``Clothoid``; version 1.0 calls the change of curvature ``curvatureDot``."""
     prime = "curvaturePrime" if node.has("curvaturePrime") else "curvatureDot"
@@ -186,7 +204,7 @@ def _clothoid(node: Node, catalogs: Catalogs) -> ClothoidSpec:
         read_position(node.child("Position"), catalogs),
         node.number("curvature"),
         node.number(prime, 0.0),
-        node.number("length"),
+        _length(node),
         _time(node, "startTime"),
         _time(node, "stopTime"),
     )
@@ -204,7 +222,7 @@ def _clothoid_spline(node: Node, catalogs: Catalogs) -> ClothoidSplineSpec:
                 None if position is None else read_position(position, catalogs),
                 start,
                 one.number("curvatureEnd", one.number("curvEnd", start)),
-                one.number("length"),
+                _length(one),
                 one.number("hOffset", 0.0),
                 _time(one, "timeStart"),
             )

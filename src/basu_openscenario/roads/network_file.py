@@ -13,6 +13,9 @@ from basu_openscenario.roads.road import Lane, LaneSection, Link, Piece, Profile
 if TYPE_CHECKING:
     from basu_openscenario.reading.xml_node import Node
 
+LONGEST_M = 1e5
+"""A road above this is refused: the longest of public maps has 13 km, and points of each are kept every 2 m."""
+
 
 def read_network(path: Path) -> Network:
     """Return the road network of an OpenDRIVE file.
@@ -34,6 +37,8 @@ def read_network(path: Path) -> Network:
             network.signals[one.text("id")] = SignalSpec(
                 one.text("id"), road.number, one.number("s"), one.text("dynamic", "no") == "yes"
             )
+    if not network.roads:
+        raise root.fault("the file has no road with a geometry; name another road network")
     for node in root.children("junction"):
         network.junctions[node.text("id")] = _junction(node)
     return network
@@ -60,6 +65,8 @@ def _road(node: Node) -> Road | None:
     length_m = node.number("length")
     if not curves:
         return None
+    if not 0.0 <= length_m <= LONGEST_M:
+        raise node.fault(f"a road of {length_m:g} m is not supported; its length must be from 0 to {LONGEST_M:g} m")
     lanes = node.child("lanes")
     links = node.find("link")
     starts = [one.number("s") for one in lanes.children("laneSection")]

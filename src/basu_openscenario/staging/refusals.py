@@ -18,7 +18,8 @@ REFUSED: dict[type, str] = {
     actions.VisibilityAction: "VisibilityAction",
 }
 """Actions that a simulator would have to show and does not, with their elements."""
-LAMPS = ("Red", "Yellow", "Green")
+LAMPS = {2: ("Red", "Green"), 3: ("Red", "Yellow", "Green")}
+"""The lamps of a light from top to bottom, by their number."""
 WORDS = {"red": "Red", "yellow": "Yellow", "amber": "Yellow", "green": "Green", "off": "Off"}
 
 
@@ -30,10 +31,12 @@ def light_of(state: str) -> str | None:
     parts = [part.strip().lower() for part in state.split(";")]
     if len(parts) == 1:
         return WORDS.get(parts[0])
-    if len(parts) != len(LAMPS) or not set(parts) <= {"on", "off"}:
+    if len(parts) not in LAMPS or not set(parts) <= {"on", "off"}:
         return None
-    lit = [lamp for lamp, part in zip(LAMPS, parts, strict=True) if part == "on"]
-    return lit[-1] if len(lit) == 1 else None if lit else "Off"
+    lit = [lamp for lamp, part in zip(LAMPS[len(parts)], parts, strict=True) if part == "on"]
+    if not lit:
+        return "Off"
+    return "Yellow" if len(lit) > 1 else lit[0]  # red with yellow is about to be green: CARLA has no such state
 
 
 def check_staged(scenario: ScenarioFile) -> None:
@@ -60,7 +63,7 @@ def _check_state(state: str, where: str) -> None:
     if light_of(state) is None:
         raise ScenarioError(
             f"{where}: the state '{state}' of a signal is not supported in the simulator; write one of "
-            f"{', '.join(WORDS)}, or three lamps such as off;off;on"
+            f"{', '.join(WORDS)}, or two or three lamps such as off;off;on"
         )
 
 
