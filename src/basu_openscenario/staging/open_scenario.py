@@ -21,6 +21,7 @@ from basu_openscenario.reading.scenario_file import ScenarioFile, read_scenario
 from basu_openscenario.staging.bodies import blueprint_of, middle_of
 from basu_openscenario.staging.play_file import PlayFile
 from basu_openscenario.staging.refusals import check_staged
+from basu_openscenario.staging.way import way_along
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,10 +39,8 @@ LONGEST_S = 60.0
 """A storyboard without an end is played for so long."""
 STEP_S = 0.02
 """Of the play as written that shows the ego's way."""
-POINT_M = 25.0
-"""Distance of the points of the ego's way."""
-LEAST_WAY_M = 20.0
-"""An entity that moves less gives no way: the ego's route goes straight on."""
+SAMPLE_M = 5.0
+"""Distance of the places of the ego from which its way is made."""
 
 
 class Rehearsed(NamedTuple):
@@ -78,7 +77,7 @@ class OpenScenario(Scenario):
         given = {name: text for name, text in given.items() if not _same(text, self.defaults[name])}
         self.found = rehearsed(self.file, self.ego, tuple(given.items()))
         self.timeout_s = 2.0 * self.found.lasts_s + LONGEST_S  # type: ignore[misc]
-        self.player: Player = make_player(self.found.scenario, ego=self.ego if self.by_agent else None)
+        self.player: Player = make_player(self.found.scenario, ego=self.ego)
         self.player.step(0.0)
 
     def actors(self) -> Sequence[ActorSpec]:
@@ -139,19 +138,16 @@ def rehearsed(file: Path, ego: str, given: tuple[tuple[str, str], ...]) -> Rehea
     check_staged(scenario)
     player = make_player(scenario, ego=ego)
     mover = player.world.mover(ego)
-    places: list[Pose] = []
-    lasts_s = 0.0
+    places, lasts_s = [], 0.0
+    start: Pose | None = None
     for frame in player.play(STEP_S, LONGEST_S):
-        at, lasts_s = middle_of(mover), frame.time_s
-        if not places or math.hypot(at.x_m - places[-1].x_m, at.y_m - places[-1].y_m) >= POINT_M:
-            places.append(at)
-    if not places:
+        lasts_s = frame.time_s
+        start = start or middle_of(mover)
+        if not places or math.hypot(mover.place.x_m - places[-1].x_m, mover.place.y_m - places[-1].y_m) >= SAMPLE_M:
+            places.append(mover.place.copy())
+    if start is None:
         raise ScenarioError(f"{file}: the storyboard is over before it begins; correct its <StopTrigger>")
-    end = middle_of(mover)
-    places[1:] = [one for one in places[1:] if math.hypot(one.x_m - end.x_m, one.y_m - end.y_m) >= POINT_M / 2.0]
-    start = places[0]
-    is_long = math.hypot(end.x_m - start.x_m, end.y_m - start.y_m) >= LEAST_WAY_M or len(places) > 1
-    return Rehearsed(scenario, start, (*places[1:], end) if is_long else (), lasts_s)
+    return Rehearsed(scenario, start, way_along([*places, mover.place]), lasts_s)
 
 
 def parameters_of(scenario: ScenarioFile, ego: str) -> tuple[Parameter, ...]:

@@ -10,7 +10,7 @@ from basu.errors import ScenarioError
 from basu_openscenario.playing.player import make_player
 from basu_openscenario.reading import xml_node
 from basu_openscenario.reading.scenario_file import read_scenario
-from tests.basu_openscenario.scenario_texts import (
+from openscenario_texts import (
     begins,
     event,
     lane_position,
