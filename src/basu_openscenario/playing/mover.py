@@ -96,7 +96,7 @@ class Mover:
         along_mps = given.vx_mps * math.cos(given.h_rad) + given.vy_mps * math.sin(given.h_rad)
         self.set_speed(along_mps)
         self.before = (given.x_m, given.y_m, self.place.z_m, given.h_rad)
-        self.teleported = False
+        self.teleported, self.moved_along = False, True
 
     def settle(self, step_s: float) -> None:
         """Derive velocity, acceleration and distance from the movement of a step, and begin the next one."""
