@@ -23,8 +23,6 @@ SUBSTEP_S = 0.01
 """The longest step of the storyboard: conditions are checked as often as in esmini's examples."""
 DROP_M = 0.1
 """Above the road, so that no wheel begins inside of it."""
-HELD_MPS = 1e-6
-"""The speed of an ego that the file holds at rest."""
 JUMP_M = 2.0
 """An entity that the storyboard moves farther than this in a frame, beyond its speed, is put there."""
 STOPPED = Controls(0.0, 0.0, 0.0)
@@ -113,8 +111,6 @@ class PlayFile(Action):
         else:
             still = abs(mover.speed_mps) < 1e-3 and gap_m < 0.02
             velocity = (0.0, 0.0) if still else self._velocity(body, there)
-            if still and name == EGO:  # brakes are the agent's alone: a velocity of almost nothing holds it as well
-                velocity = (HELD_MPS, 0.0)
             stage.move(name, *velocity, 0.0 if still else turn_rad / stage.step_s)
 
     def _velocity(self, body: Body, there: Pose) -> tuple[float, float]:

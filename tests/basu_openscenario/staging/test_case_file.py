@@ -126,7 +126,7 @@ def test_without_the_plugin_its_installation_is_named(tmp_path, monkeypatch):
         (["all"], False),
     ],
 )
-def test_files_of_a_plugin_are_told_from_cases(words, is_led):
+def test_only_files_of_a_plugin_move_an_ego(words, is_led):
     assert is_led_by_file(words) == is_led
 
 
