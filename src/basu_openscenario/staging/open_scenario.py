@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
     from basu.scenarios.criteria import Criterion
     from basu.scenarios.parameters import Parameter, Value
+    from basu.scenarios.place import Place
     from basu_openscenario.playing.player import Player
+    from basu_openscenario.roads.place import Place as RoadPlace
 
 EGO_NAMES = ("ego", "hero", "egovehicle", "ego_vehicle")
 """Names of entities that an agent drives unless --ego names another, without regard to case."""
@@ -69,9 +71,9 @@ class OpenScenario(Scenario):
         ego = GivenActor(role="hero", model=blueprint_of(entity), pose=found.start)
         return replace(case, ego=ego, way=found.way)
 
-    def __init__(self, place: object, values: Mapping[str, Value]) -> None:
+    def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
         """Read the file with the values, and do the init actions."""
-        super().__init__(place, values)  # type: ignore[arg-type]
+        super().__init__(place, values)
         self.ego, self.by_agent = _ego_of(values), values["driver"] == AGENT
         given = {name: _text(values[name]) for name in self.defaults if name in values}
         given = {name: text for name, text in given.items() if not _same(text, self.defaults[name])}
@@ -138,7 +140,8 @@ def rehearsed(file: Path, ego: str, given: tuple[tuple[str, str], ...]) -> Rehea
     check_staged(scenario)
     player = make_player(scenario, ego=ego)
     mover = player.world.mover(ego)
-    places, lasts_s = [], 0.0
+    places: list[RoadPlace] = []
+    lasts_s = 0.0
     start: Pose | None = None
     for frame in player.play(STEP_S, LONGEST_S):
         lasts_s = frame.time_s
