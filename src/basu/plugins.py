@@ -1,50 +1,21 @@
-"""Plugins: distributions that bring commands, agents, outputs and more, which their entry points name, as for pytest.
+"""Plugins: distributions that bring readers of scenario files, which their entry points name, as for pytest.
 
-A plugin acts where it is installed; nothing has to be configured. Each group says beside its constant what its entry
-points name. docs/how-to/plugins.md shows a plugin. ``DISTRIBUTIONS`` names the plugins of this project, so that a
-missing one is named with its ``pip install``.
+A plugin acts where it is installed; nothing has to be configured. ``DISTRIBUTIONS`` names the plugins of this project,
+so that a missing one is named with its ``pip install``.
 """
 
 from __future__ import annotations
 
 import functools
 from importlib.metadata import EntryPoint, entry_points
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 from basu.errors import UserError
 
-if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Callable
-
-COMMANDS = "basu.commands"  # a `Command`
-AGENTS = "basu.agents"  # the class of an agent
-AGENT_FILES = "basu.agent_files"  # a `basu.agents.agent_files.AgentFiles`: reads agents' files of other programs
 SCENARIO_FILES = "basu.scenario_files"  # by the suffix of the file's name: a `basu.scenarios.cases.ScenarioReader`
-OUTPUTS = "basu.outputs"  # a `basu.running.outputs.Output`: shows or writes a drive while it lasts
-PARTS = "basu.parts"  # the parts of the benchmark that this project's plugins bring; each caller knows its own
 
-DISTRIBUTIONS = {
-    COMMANDS: {"metrics": "basu-carla-log", "replay": "basu-carla-log", "ros": "basu-ros", "sumo": "basu-sumo"},
-    AGENTS: dict.fromkeys(("autoware", "autoware-ai", "ros", "ros1"), "basu-ros"),
-    AGENT_FILES: {"leaderboard": "basu-leaderboard"},
-    SCENARIO_FILES: {"xosc": "basu-openscenario"},
-    OUTPUTS: {"window": "basu-window", "viewer": "basu-window", "ros": "basu-ros"},
-    PARTS: {
-        "person": "basu-window",
-        "search": "basu-search",
-        "sumo": "basu-sumo",
-        "viewer_replay": "basu-window",
-    },
-}
+DISTRIBUTIONS = {SCENARIO_FILES: {"xosc": "basu-openscenario"}}
 """The plugins of this project: group -> name of the entry point -> distribution."""
-
-
-class Command(NamedTuple):
-    """A command of ``basu`` that a plugin brings: a line of help, and what adds the arguments to its parser."""
-
-    help: str
-    add: Callable[[argparse.ArgumentParser], None]
 
 
 @functools.cache
@@ -68,9 +39,9 @@ def load(group: str, name: str, what: str) -> Any:  # noqa: ANN401 - whatever th
     """Return what an entry point names, imported.
 
     Args:
-        group: one of the groups above.
+        group: the group of entry points.
         name: the name of the entry point.
-        what: what needs it, for the user: ``--hud``.
+        what: what needs it, for the user: ``a file x.xosc``.
 
     Raises:
         UserError: no plugin brings it.

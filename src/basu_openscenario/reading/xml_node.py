@@ -97,7 +97,7 @@ class Node:
             raise self.fault(f'{name}="{raw}" of <{self.tag}> cannot be resolved: {error}') from error
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return an attribute as a finite number, or ``INF`` where the file says so.
+        """Return an attribute as a number; infinite if the file says so.
 
         Raises:
             ScenarioError: it is missing without a default, or no number.
