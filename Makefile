@@ -44,6 +44,7 @@ pages:  ## the generated pages and tables of docs/
 	$(BIN)/python scripts/make_agent_page.py
 	$(BIN)/python scripts/make_gate_page.py
 	$(BIN)/python scripts/make_fault_page.py
+	$(BIN)/python scripts/make_openscenario_page.py
 	$(BIN)/python scripts/make_rules_page.py
 	$(BIN)/python scripts/make_example_blocks.py
 

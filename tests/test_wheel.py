@@ -34,6 +34,7 @@ OPTIONAL = (
         "linden_maps",
         "basu_carla_log",
         "basu_leaderboard",
+        "basu_openscenario",
         "basu_ros",
         "basu_search",
         "basu_sumo",

@@ -13,6 +13,7 @@ SCRIPTS = [
     "make_agent_page.py",
     "make_gate_page.py",
     "make_fault_page.py",
+    "make_openscenario_page.py",
     "make_rules_page.py",
     "make_example_blocks.py",
 ]

@@ -34,6 +34,7 @@ DISTRIBUTIONS = {
     },
     AGENTS: dict.fromkeys(("autoware", "autoware-ai", "ros", "ros1"), "basu-ros"),
     AGENT_FILES: {"leaderboard": "basu-leaderboard"},
+    SCENARIO_FILES: {"xosc": "basu-openscenario"},
     OUTPUTS: {"window": "basu-window", "viewer": "basu-window", "ros": "basu-ros"},
     PARTS: {
         "person": "basu-window",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,8 @@ from basu.running.batch import changes
 from basu.running.outputs import check_outputs
 from basu.running.scenario_runs.command import run_scenarios
 from basu.running.scenario_runs.options import ScenarioOptions
+from basu.scenarios.cases import is_led_by_file
+from basu.settings.command_line import typed
 from basu.settings.option import fields_of, to_json
 
 if TYPE_CHECKING:
@@ -31,6 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.config = resumed.resolve()
     config = config_of(arguments, "scenario run", ScenarioOptions)
     options = options_of(ScenarioOptions, arguments, config.options)
+    if "agents" not in {**config.options.values, **typed(ScenarioOptions, arguments)} and is_led_by_file(options.what):
+        options = replace(options, agents=("standing",), fixed=(*options.fixed, ("driver", "file")))
     scoring = scoring_of(arguments, config.scoring)
     if resumed is not None:
         resumed = resumed.resolve()

@@ -185,7 +185,10 @@ class ScenarioFile(NamedTuple):
 
 
 class ScenarioReader(Protocol):
-    """A reader of scenario files, the entry point of a plugin that has the file's suffix as its name: "xosc"."""
+    """A reader of scenario files, the entry point of a plugin that has the file's suffix as its name: "xosc".
+
+    Its classes have the parameters ``ego`` (the entity of the ego) and ``driver`` (``agent`` or ``file``).
+    """
 
     def __call__(self, path: Path) -> ScenarioFile:
         """Return the classes and the cases of a file.
@@ -282,7 +285,18 @@ def file_in(word: str) -> tuple[Path | None, str]:
 
 def _is_scenario_file(suffix: str) -> bool:
     """Return whether files with this suffix hold scenarios, for BASU or for a plugin."""
-    return suffix in OWN_SUFFIXES or (suffix != "" and plugins.is_installed(plugins.SCENARIO_FILES, suffix[1:]))
+    return suffix in OWN_SUFFIXES or is_of_plugin(suffix)
+
+
+def is_of_plugin(suffix: str) -> bool:
+    """Return whether a plugin reads files with this suffix: one that is installed, or one of this project."""
+    name, own = suffix.removeprefix("."), plugins.DISTRIBUTIONS[plugins.SCENARIO_FILES]
+    return name != "" and (name in own or plugins.is_installed(plugins.SCENARIO_FILES, name))
+
+
+def is_led_by_file(words: Sequence[str]) -> bool:
+    """Return whether all words name files of a plugin, in which an ego without an agent moves as the file has it."""
+    return all(is_of_plugin(Path(word).suffix) for word in words)
 
 
 def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
@@ -309,7 +323,8 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
     ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()
     unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
-    return Playable(case, scenario, read_values(*narrowed(scenario.parameters, given)), unread)
+    values = read_values(*narrowed(scenario.parameters, given))
+    return Playable(scenario.settled(case, values), scenario, values, unread)
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.place import Place
     from basu.scenarios.stage import ActorSpec, Stage
+    from basu.scenarios.xml_elements import Case
 
 
 class Scenario(ABC):
@@ -69,6 +70,12 @@ class Scenario(ABC):
     def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
         """Take the place and the values; nothing is in the world yet."""
         self.place, self.values = place, values
+
+    @classmethod
+    def settled(cls, case: Case, values: Mapping[str, Value]) -> Case:
+        """Return the case with its place and its ego. A class overrides this if its places depend on its values."""
+        del values
+        return case
 
     @classmethod
     def title(cls) -> str:

@@ -50,6 +50,7 @@ class Case:
     )  # stated in the file (`basu.scenarios.characteristics`)
     place: str = ""  # where it is, in words
     on_route: bool = False  # whether on the shuttle's route
+    map_file: Path | None = None  # an OpenDRIVE file that the case brings; its name without suffix is the town
     source: str = ""  # file and line, for sentences
 
 

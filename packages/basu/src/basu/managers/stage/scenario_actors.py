@@ -177,10 +177,12 @@ class ActorCommands:
         self._walkers: dict[int, tuple[float, float]] = {}  # the last command of each, in m/s
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
-        """Lead a vehicle."""
+        """Lead a vehicle; the pedals of the ego stay the agent's."""
         motion, actor = Motion(velocity_x_mps, velocity_y_mps, yaw_rate_radps), member.actor
         before = self._vehicles.get(actor.id)
-        if motion == STILL and actor.id not in self._held:
+        if member.name == EGO:
+            pass
+        elif motion == STILL and actor.id not in self._held:
             self._held.add(actor.id)
             self._control(actor, HELD)
             self._new.append(carla.command.ApplyTargetVelocity(actor.id, carla.Vector3D()))
@@ -223,7 +225,7 @@ class ActorCommands:
         """Send the commands of all of them."""
         commands, self._new = self._new, []
         for actor_id, (actor, motion) in self._vehicles.items():
-            if motion == STILL:
+            if actor_id in self._held:
                 continue  # its brakes hold it
             rise_mps = actor.get_velocity().z
             velocity = carla.Vector3D(motion.velocity_x_mps, motion.velocity_y_mps, rise_mps)

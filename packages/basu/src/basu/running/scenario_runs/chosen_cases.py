@@ -23,7 +23,8 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
     Raises:
         UserError: there is none of that name, or it cannot be sampled like this.
     """
-    variation = Variation(fixed=options.fixed, design=design_of(options), vary=options.vary)
+    fixed = options.fixed if options.ego is None else (*options.fixed, ("ego", options.ego))
+    variation = Variation(fixed=fixed, design=design_of(options), vary=options.vary)
     typology = list(Group)
     cases = having(cases_of(options.what, options.files), options.where)
     by_group = sorted(cases, key=lambda each: typology.index(each.scenario.group))

@@ -31,6 +31,7 @@ from basu.running.drive import DriveDone, Driven
 from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
+from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
 from basu.scenarios.cases import cases_of
 from basu.scenarios.tree_picture import draw
 from basu.scenarios.verdict import judge as verdict_of
@@ -240,7 +241,8 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with (
-        simulator_for(options.simulator) as simulator,
+        maps_of([case]) as folders,
+        simulator_for(with_maps(options.simulator, folders)) as simulator,
         asking(f"loading {case.town}"),
         simulator.long_call(),
     ):

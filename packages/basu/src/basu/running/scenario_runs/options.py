@@ -75,6 +75,15 @@ class CaseOptions(Settings):
             style="pairs",
         ),
     ] = ()
+    ego: Annotated[
+        str | None,
+        Option(
+            help="the entity of an OpenSCENARIO file that the agent drives",
+            group=CASES,
+            metavar="NAME",
+            default_text="Ego or hero, else the first vehicle",
+        ),
+    ] = None
     agents: Annotated[
         tuple[str, ...],
         Option(

@@ -12,6 +12,7 @@ from basu.jobs.job import After, Played, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
 from basu.running.scenario_runs.chosen_cases import files_of
+from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.scenarios.cases import open_library
 from basu.simulator import simulator_for
@@ -80,7 +81,7 @@ def open_cases(
     library = open_library(files_of(options))
     agents: Mapping[str, FoundAgent] = given or dict(zip(options.agents, agents_of(options), strict=True))
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
-    with simulator_for(options.simulator) as simulator:
+    with maps_of(library.cases) as folders, simulator_for(with_maps(options.simulator, folders)) as simulator:
         session = CaseSession(options, simulator, Towns(simulator), scoring)
 
         def play(job: CaseJob) -> Played:

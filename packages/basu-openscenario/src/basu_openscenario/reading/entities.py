@@ -1,0 +1,151 @@
+"""Entities of a scenario: vehicles, pedestrians and objects with their boxes, limits and controllers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from basu_openscenario.reading.catalogs import referred, resolved
+
+if TYPE_CHECKING:
+    from basu_openscenario.reading.catalogs import Catalogs
+    from basu_openscenario.reading.xml_node import Node
+
+KINDS = {"Vehicle": "vehicle", "Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
+UNLIMITED = 1e10
+"""A limit that no motion reaches, m/s or m/s²."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoundingBox:
+    """The box of an entity about its reference point: m, x forwards, y to the left, z up."""
+
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    length_m: float = 0.0
+    width_m: float = 0.0
+    height_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Performance:
+    """The limits of an entity's motion along its path."""
+
+    max_speed_mps: float = UNLIMITED
+    max_acceleration_mps2: float = UNLIMITED
+    max_deceleration_mps2: float = UNLIMITED
+
+
+@dataclass(frozen=True, slots=True)
+class Controller:
+    """A controller that a file assigns, with its properties by name."""
+
+    name: str
+    properties: dict[str, str]
+    line: str
+    """File and line, for sentences."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """An entity: a role in the scenario with a body."""
+
+    name: str
+    kind: str
+    category: str
+    box: BoundingBox
+    performance: Performance
+    properties: dict[str, str] = field(default_factory=dict)
+    controllers: tuple[Controller, ...] = ()
+    line: str = ""
+    model: str = ""
+    """The name that the file gives the body, such as a blueprint of CARLA."""
+
+
+def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], dict[str, tuple[str, ...]]]:
+    """Return the entities by name, and the members of each selection of entities by its name.
+
+    Raises:
+        ScenarioError: two have one name, or one cannot be read.
+    """
+    found: dict[str, Entity] = {}
+    block = root.child("Entities")
+    for node in block.children("ScenarioObject"):
+        entity = _entity(node, catalogs)
+        if entity.name in found:
+            raise node.fault(f"two entities are called '{entity.name}'; name one otherwise")
+        found[entity.name] = entity
+    selections: dict[str, tuple[str, ...]] = {}
+    for node in block.children("EntitySelection"):
+        members = node.child("Members")
+        names = [one.text("entityRef") for one in members.children("EntityRef")]
+        kinds = {one.text("type") for one in members.children("ByType")}
+        names += [entity.name for entity in found.values() if entity.kind in kinds]
+        for name in names:
+            if name not in found:
+                raise node.fault(f"the selection names the entity '{name}', which does not exist; correct the name")
+        selections[node.text("name")] = tuple(names)
+    return found, selections
+
+
+def _entity(node: Node, catalogs: Catalogs) -> Entity:
+    """Return one ``ScenarioObject``."""
+    described = resolved(node.only("ObjectController", "MonitorDeclarations"), catalogs)
+    if described.tag not in KINDS:
+        raise described.fault(f"<{described.tag}> is not supported as an entity; use one of {', '.join(KINDS)}")
+    trailer = described.find("Trailer")
+    reference = None if trailer is None else trailer.find("TrailerRef")
+    if trailer is not None and (reference is None or reference.text("entityRef", "")):
+        raise trailer.fault("<Trailer> is not supported; let the trailer be an entity of its own, or remove it")
+    kind = KINDS[described.tag]
+    category = described.text(f"{'miscObject' if kind == 'miscellaneous' else kind}Category", "")
+    holders = [one for one in node.children("ObjectController") if any(True for _ in one.children())]
+    controllers = [read_controller(one, catalogs) for one in holders]
+    return Entity(
+        node.text("name"),
+        kind,
+        category,
+        _box(described),
+        _performance(described),
+        _properties(described),
+        tuple(controllers),
+        f"{node.path}:{node.element.sourceline}",
+        described.text("name", ""),
+    )
+
+
+def _box(node: Node) -> BoundingBox:
+    """Return the bounding box of a body."""
+    box = node.child("BoundingBox")
+    centre, size = box.child("Center"), box.child("Dimensions")
+    return BoundingBox(
+        (centre.number("x"), centre.number("y"), centre.number("z")),
+        size.number("length"),
+        size.number("width"),
+        size.number("height"),
+    )
+
+
+def _performance(node: Node) -> Performance:
+    """Return the limits of a vehicle; other bodies have none."""
+    block = node.find("Performance")
+    if block is None:
+        return Performance()
+    return Performance(
+        block.number("maxSpeed", 100.0), block.number("maxAcceleration", 10.0), block.number("maxDeceleration", 10.0)
+    )
+
+
+def _properties(node: Node) -> dict[str, str]:
+    """Return the properties of a body or a controller by name."""
+    block = node.find("Properties")
+    return {} if block is None else {one.text("name"): one.text("value") for one in block.children("Property")}
+
+
+def read_controller(holder: Node, catalogs: Catalogs) -> Controller:
+    """Return the controller inside ``holder``, written out or by reference.
+
+    Raises:
+        ScenarioError: there is none.
+    """
+    node = referred(holder, "Controller", catalogs)
+    return Controller(node.text("name"), _properties(node), f"{node.path}:{node.element.sourceline}")

@@ -1,0 +1,211 @@
+"""Write docs/reference/openscenario.md from the reader's tables: `make_openscenario_page.py [--check]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from basu_openscenario.playing.building import MAKERS
+from basu_openscenario.reading import actions
+from basu_openscenario.reading.action_reading import PRIVATE_ACTIONS
+from basu_openscenario.reading.conditions import ENTITY_CONDITIONS, VALUE_CONDITIONS
+from basu_openscenario.reading.entities import KINDS
+from basu_openscenario.reading.global_action_reading import GLOBAL_ACTIONS
+from basu_openscenario.reading.position_reading import POSITIONS, SHAPES
+from basu_openscenario.reading.scenario_file import VERSIONS
+from basu_openscenario.staging.refusals import REFUSED
+
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "openscenario.md"
+HEAD = """# OpenSCENARIO XML
+
+<!-- written by scripts/make_openscenario_page.py -->
+
+Files of OpenSCENARIO XML {versions} are played as cases of BASU. They need the distribution `basu-openscenario`.
+
+```console
+$ basu scenario run cut-in.xosc --agent my_agent.py
+$ basu scenario run cut-in.xosc --agent my_agent.py --ego Ego --set EgoSpeed=80
+$ basu scenario run cut-in.xosc
+```
+
+With `--agent`, the agent drives the entity that `--ego` names. By default that is the vehicle called Ego or hero,
+else the first vehicle. It begins at the place and with the speed that the file gives it. Its route takes the roads
+that the entity takes as written, in the lanes that continue its first lane. The file's actions on it have no effect,
+and its conditions see where the agent drives it. All other entities move as written, by velocities that BASU sets in
+each frame.
+
+Without `--agent`, the ego moves as written as well. The id of such a case ends in `driver=file`.
+
+The road network of the file is loaded into the server that BASU starts. A server at `--host` must have it: start it
+with `linden serve --maps DIR`, or send it with `--upload-map`. The town is the name of the OpenDRIVE file.
+
+Parameters of the file that are numbers or truth values are parameters of the case, for `--set`, `--sweep` and
+`--grid`. Constraints of the file are their ranges. The verdict follows from BASU's policy and from contacts: the file
+has no criteria.
+
+If a file is broken, or asks for what is refused below, the command ends before a server starts. The message names
+file, line and what to do. The drive ends with the storyboard. A storyboard without an end is played for a minute as
+written, and a minute longer with an agent.
+
+Words of the tables:
+
+- played: the simulator plays it.
+- kinematic: only the kinematic mode plays it. `scripts/outside/esmini_compare.py` compares that mode with esmini.
+- noted: the storyboard and its conditions know it, and the simulator does not show it.
+- refused: a file with it is refused by this name.
+"""
+
+PRIVATE = [
+    "SpeedAction",
+    "SpeedProfileAction",
+    "LongitudinalDistanceAction",
+    "LaneChangeAction",
+    "LaneOffsetAction",
+    "LateralDistanceAction",
+    "VisibilityAction",
+    "SynchronizeAction",
+    "AssignControllerAction",
+    "ActivateControllerAction",
+    "OverrideControllerValueAction",
+    "TeleportAction",
+    "AssignRouteAction",
+    "FollowTrajectoryAction",
+    "AcquirePositionAction",
+    "RandomRouteAction",
+    "AnimationAction",
+    "LightStateAction",
+    "TrailerAction",
+]
+GLOBAL = [
+    "EnvironmentAction",
+    "EntityAction",
+    "ParameterAction",
+    "VariableAction",
+    "TrafficSignalStateAction",
+    "TrafficSignalControllerAction",
+    "TrafficSourceAction",
+    "TrafficSinkAction",
+    "TrafficSwarmAction",
+    "TrafficStopAction",
+    "TrafficAreaAction",
+    "SetMonitorAction",
+    "CustomCommandAction",
+]
+ENTITY = [
+    "EndOfRoadCondition",
+    "CollisionCondition",
+    "OffroadCondition",
+    "TimeHeadwayCondition",
+    "TimeToCollisionCondition",
+    "AccelerationCondition",
+    "StandStillCondition",
+    "SpeedCondition",
+    "RelativeSpeedCondition",
+    "TraveledDistanceCondition",
+    "ReachPositionCondition",
+    "DistanceCondition",
+    "RelativeDistanceCondition",
+    "RelativeClearanceCondition",
+    "AngleCondition",
+    "RelativeAngleCondition",
+]
+VALUE = [
+    "ParameterCondition",
+    "VariableCondition",
+    "SimulationTimeCondition",
+    "StoryboardElementStateCondition",
+    "TimeOfDayCondition",
+    "UserDefinedValueCondition",
+    "TrafficSignalCondition",
+    "TrafficSignalControllerCondition",
+]
+POSITION = [
+    "WorldPosition",
+    "RelativeWorldPosition",
+    "RelativeObjectPosition",
+    "RoadPosition",
+    "RelativeRoadPosition",
+    "LanePosition",
+    "RelativeLanePosition",
+    "RoutePosition",
+    "TrajectoryPosition",
+    "GeoPosition",
+]
+SHAPE = ["Polyline", "Clothoid", "ClothoidSpline", "Nurbs"]
+OBJECT = ["Vehicle", "Pedestrian", "MiscObject", "ExternalObjectReference"]
+REMARKS = {
+    "VisibilityAction": "played where it makes the entity visible for all",
+    "EnvironmentAction": "noted in the init, where `--weather` sets the weather; kinematic elsewhere",
+    "EntityAction": "`DeleteEntityAction` is played, `AddEntityAction` is kinematic",
+    "AssignControllerAction": "active controllers of esmini are refused; those of the ego do not count",
+    "ActivateControllerAction": "likewise",
+    "LightStateAction": "lights of vehicles are not shown",
+    "TrafficSignalStateAction": "a word such as `green`, or two or three lamps such as `off;off;on`",
+    "LateralDistanceAction": "without `DynamicConstraints`",
+    "MiscObject": "shown as a barrier or a cone",
+}
+NOTED = {"LightStateAction", "AssignControllerAction", "ActivateControllerAction"}
+ALONE = {element for kind, element in REFUSED.items() if kind in MAKERS or kind is actions.EnvironmentAction}
+
+
+def page() -> str:
+    """Return the page."""
+    parts = [HEAD.format(versions=", ".join(VERSIONS))]
+    for title, names, read in (
+        ("Private actions", PRIVATE, PRIVATE_ACTIONS),
+        ("Global actions", GLOBAL, GLOBAL_ACTIONS),
+        ("Conditions of entities", ENTITY, ENTITY_CONDITIONS),
+        ("Conditions of values", VALUE, VALUE_CONDITIONS),
+        ("Positions", POSITION, POSITIONS),
+        ("Shapes of trajectories", SHAPE, SHAPES),
+        ("Entities", OBJECT, KINDS),
+    ):
+        unlisted = sorted(set(read) - set(names))
+        assert not unlisted, f"{title} lacks {unlisted}; add them to the list in this file"
+        rows = [f"| `{name}` | {_support(name, read)} | {REMARKS.get(name, '')} |" for name in names]
+        parts.append("\n".join([f"## {title}\n", "| element | support | remark |", "|---|---|---|", *rows]) + "\n")
+    parts.append(TAIL)
+    return "\n".join(parts)
+
+
+def _support(name: str, read: object) -> str:
+    """Return the word for an element."""
+    if name not in read:  # type: ignore[operator]
+        return "refused"
+    if name in ALONE:
+        return "kinematic"
+    return "noted" if name in NOTED else "played"
+
+
+TAIL = """## Other parts
+
+| part | support |
+|---|---|
+| parameters, expressions, variables, catalogs, `EntitySelection` | played |
+| `TrafficSignalController` with phases, delay and reference | played |
+| priorities, `maximumExecutionCount`, triggers with edges and delays | played |
+| `selectTriggeringEntities="true"` | refused |
+| `Trailer` | refused |
+| `ParameterValueDistribution` | refused: use `--sweep` or `--grid` on the parameters |
+| monitors, traffic definitions | refused |
+
+Decisions: [two modes](../decisions/0126-openscenario.md), [esmini as the judge](../decisions/0127-esmini.md),
+[files of plugins as cases](../decisions/0128-files-of-plugins.md).
+"""
+
+
+def main() -> int:
+    """Write the page, or check that it is up to date."""
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
+    if not arguments.parse_args().check:
+        PAGE.write_text(page(), "utf-8")
+    elif not PAGE.is_file() or PAGE.read_text("utf-8") != page():
+        print(f"{PAGE.name} is out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
