@@ -27,7 +27,7 @@ class OneActor:
 
     def __init__(self, client: carla.Client, actor: carla.Actor) -> None:
         self.actor, self.commands, self.time_s = actor, ActorCommands(client), 0.0
-        self.member = SimpleNamespace(actor=actor)
+        self.member = SimpleNamespace(actor=actor, name="led")
         self.seen: list[Body] = []
 
     def is_there(self, _name: str) -> bool:
