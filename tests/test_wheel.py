@@ -24,13 +24,22 @@ ROOT = Path(__file__).parents[1]
 OPTIONAL = (
     "rerun",
     "rerun_bindings",
-    "pygame",
     "gymnasium",
     "pyproj",
     "IPython",
     "nbclient",
     "warp",
-    *("linden_maps", "basu_carla_log", "basu_leaderboard", "basu_ros", "basu_search", "basu_sumo", "basu_window", "linden_window", "websockets"),
+    *(
+        "linden_maps",
+        "basu_carla_log",
+        "basu_leaderboard",
+        "basu_ros",
+        "basu_search",
+        "basu_sumo",
+        "basu_window",
+        "linden_window",
+        "websockets",
+    ),
 )
 ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>"""
 
