@@ -1,8 +1,7 @@
 """`Hub`: what pages are shown and what they have missed. Knows no socket and no clock of its own.
 
-A page takes notes in their order, but the newest frame, the newest readings and the newest measurement of each sensor
-only: a page that reads slowly misses frames. If notes pile up
-before a page, it is closed with a sentence.
+A page takes notes in their order. It takes the newest frame, readings and measurements only: a page that reads slowly
+misses frames. If notes pile up before a page, it is closed with a sentence.
 """
 
 import asyncio

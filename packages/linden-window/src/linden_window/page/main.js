@@ -402,11 +402,9 @@ class Page {
     const kinds = [...this.poses].map((pose) => this.actors.known.get(pose.id)?.kind);
     const count = (/** @type {string} */ kind) => kinds.filter((each) => each === kind).length;
     const clock = this.replay.isOn ? this.replay.clock : this.timeline.last;
-    const lines = [
-      { name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` },
-      { name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` },
-    ];
-    if (this.weather) lines.push({ name: "weather", value: this.weather });
+    const lines = [{ name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` }];
+    if (this.readings === null) lines.push({ name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` });
+    if (this.weather && this.readings === null) lines.push({ name: "weather", value: this.weather });
     lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
     if (!this.replay.isOn) lines.push({ name: "data", value: `${(this.bytesPerSecond / 1000).toFixed(0)} kB/s` });
     list(element("figures"), lines);
@@ -422,6 +420,7 @@ class Page {
     box.hidden = actor === undefined;
     if (actor === undefined || pose === null) return;
     if (this.readings !== null && pose.id === this.ego && !this.replay.isOn) return showReadings(box, this.readings);
+    box.className = "";
     const heading = document.createElement("h2");
     heading.textContent = actor.type;
     const lines = document.createElement("div");

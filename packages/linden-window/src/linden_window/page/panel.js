@@ -123,6 +123,7 @@ export function aboutActor(actor, pose) {
 
 /** Show the figures of a drive. @param {HTMLElement} box @param {ReadingsNote} readings */
 export function showReadings(box, readings) {
+  box.className = "readings";
   /** @type {HTMLElement[]} */
   const parts = [];
   for (const group of readings.groups) {

@@ -160,7 +160,7 @@ function drawPoints(context, buffer, start, count) {
     context.beginPath();
     context.arc(width / 2, height / 2, scale * ring, 0, 7);
     context.stroke();
-    if (ring <= reach) context.fillText(`${ring} m`, width / 2 + scale * ring - 34, height / 2 - 4);
+    if (ring <= reach && ring >= 0.2 * reach) context.fillText(`${ring} m`, width / 2 + scale * ring - 34, height / 2 - 4);
   }
   for (let at = 0; at < count; at++) {
     const x = width / 2 + scale * 0.01 * places[4 * at + 1];
