@@ -40,7 +40,7 @@ LONGEST = (
     "packages/linden/tests/cli/test_serve.py",
     "packages/linden-maps/tests/aisan/test_convert.py",
     "packages/linden/tests/test_fuzzed_files.py",
-    "packages/basu-window/tests/hud/test_live.py",
+    "packages/basu-window/tests/browser/test_live.py",
     "packages/basu/tests/test_notebook.py",
     "packages/basu/tests/managers/test_traffic_manager.py",
     "tests/docs/test_site.py",

@@ -24,7 +24,6 @@ ROOT = Path(__file__).parents[1]
 OPTIONAL = (
     "rerun",
     "rerun_bindings",
-    "pygame",
     "gymnasium",
     "pyproj",
     "IPython",

@@ -129,7 +129,7 @@ def test_the_commands_of_a_tutorial_work_in_a_base_installation(page: str, base:
 
 
 def test_packages_of_plugins_and_extras_are_missing_in_the_base_installation(base: Environment, tmp_path: Path) -> None:
-    others = "pyproj", "pandas", "gymnasium", "pygame", "rosbags", "libsumo", "sklearn", "linden_maps", "basu_sumo"
+    others = "pyproj", "pandas", "gymnasium", "rosbags", "libsumo", "sklearn", "linden_maps", "basu_sumo"
     ask = f"import importlib.util as u, basu, linden; print([n for n in {others} if u.find_spec(n)])"
     done = base.run(str(base.bin / "python"), "-c", ask, folder=tmp_path)
     assert done.stdout == "[]\n", done.stderr

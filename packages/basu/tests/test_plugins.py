@@ -83,7 +83,6 @@ def test_a_command_without_its_plugin_names_what_to_install(command: str, capsys
 @pytest.mark.parametrize(
     ("arguments", "distribution"),
     [
-        (["run", "basic", "--hud"], "basu-window"),
         (["run", "basic", "--watch"], "basu-window"),
         (["run", "basic", "--viewer"], "basu-window"),
         (["run", "basic", "--keys", "data/human_session.json"], "basu-window"),

@@ -1,11 +1,14 @@
 """Claims about the page in a real browser, drawn by the processor, and in a browser without WebGL."""
 
+import select
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
 from browsers import running_browser
+from linden_window import panes
 from linden_window.link import PageLink
 from window_pages import WAIT_MS, begin, drive, page_of
 
@@ -74,6 +77,83 @@ def test_the_page_says_when_the_program_has_ended(link: PageLink, browser: Brows
     page.wait_for_function("globalThis.page?.connection.bytes > 0", timeout=WAIT_MS)
     link.close()
     page.wait_for_function("document.getElementById('says').innerText.includes('has ended')", timeout=WAIT_MS)
+    page.close()
+
+
+SENSORS = [
+    {"name": "FRONT", "type": "sensor.camera.rgb"},
+    {"name": "TOP", "type": "sensor.lidar.ray_cast"},
+    {"name": "GPS", "type": "sensor.other.gnss"},
+]
+PIXELS = "[...document.querySelector('#panes canvas').getContext('2d').getImageData({x}, {y}, 1, 1).data]"
+
+
+def test_sensors_have_panes_that_buttons_and_n_open_and_close(link: PageLink, browser: Browser) -> None:
+    begin(link)
+    link.note({"type": "sensors", "sensors": SENSORS})
+    page = page_of(browser, link.address + "?flat")
+    page.wait_for_function("document.querySelectorAll('#sensors button').length === 3", timeout=WAIT_MS)
+    page.keyboard.press("n")
+    assert page.locator("#panes figure").count() == 1
+    picture = np.zeros((40, 60, 3), np.uint8)
+    picture[:, 30:] = (10, 200, 30)
+    link.pane("FRONT", panes.picture("FRONT", 12, picture))
+    page.wait_for_function("page.panes.drawn.get('FRONT') === 1", timeout=WAIT_MS)
+    assert page.evaluate(PIXELS.format(x=10, y=5)) == [0, 0, 0, 255]
+    assert page.evaluate(PIXELS.format(x=50, y=5)) == [10, 200, 30, 255]
+    assert "FRONT: camera.rgb" in page.inner_text("#panes")
+    assert "frame 12" in page.inner_text("#panes")
+    page.keyboard.press("n")
+    ahead_and_right = np.array([[6.0, 0.0], [0.0, 6.0]])
+    link.pane("FRONT", panes.picture("FRONT", 13, picture))  # of a pane that is closed
+    link.pane("TOP", panes.points("TOP", 13, ahead_and_right, np.array([[255, 0, 0], [0, 0, 255]], np.uint8)))
+    page.wait_for_function("page.panes.drawn.get('TOP') === 1", timeout=WAIT_MS)
+    assert page.evaluate(PIXELS.format(x=180, y=72)) == [255, 0, 0, 255]
+    assert page.evaluate(PIXELS.format(x=288, y=180)) == [0, 0, 255, 255]
+    page.click("#sensors button >> text=GPS")
+    link.pane("GPS", panes.lines("GPS", 14, [("Latitude", "40.0000000° N")]))
+    page.wait_for_function("document.getElementById('panes').innerText.includes('40.0000000° N')", timeout=WAIT_MS)
+    assert page.locator("#panes figure").count() == 2
+    page.click("[aria-label='Close TOP']")
+    assert page.evaluate("[...page.panes.open.keys()]") == ["GPS"]
+    assert page.evaluate("page.panes.drawn.get('FRONT')") == 1
+    wanted = [[], ["FRONT"], ["TOP"], ["TOP", "GPS"], ["GPS"]]
+    asked: list[list[str]] = []
+    while len(asked) < len(wanted) and link.is_open:
+        select.select([link], [], [], 1.0)
+        asked += [order["names"] for order in link.orders() if order["order"] == "sensors"]
+    assert asked == wanted
+    assert page.errors == []
+    page.close()
+
+
+def test_figures_lines_and_paths_of_a_drive_are_shown(link: PageLink, browser: Browser) -> None:
+    begin(link)
+    sign = {"kind": "stop_sign", "x": 20.0, "y": 0.0, "z": 0.0, "yaw": 0.0}
+    light = {**sign, "kind": "traffic_light", "x": 30.0}
+    path = {"points": [[0, 0, 0], [60, 0, 0]], "controls": [sign, light], "half": 1.75}
+    link.note({"type": "route", "ego": 7, "drives": True, "stops": [{"name": "Stop A", "x": 40.0, "y": 3.0}], **path})
+    lines = [{"name": "gear", "value": "D1"}, {"name": "steer", "value": "-0.50", "turn": -0.5}]
+    note = {"groups": [{"name": "Motion", "lines": lines}], "impulses": [0.0] * 199 + [80.0]}
+    link.note({"type": "signals", "states": [-1, 2]})
+    page = page_of(browser, link.address)
+    page.wait_for_function("globalThis.page?.input.isOn", timeout=WAIT_MS)
+    drive(link, page, 8)
+    link.note({"type": "readings", "tally": ["1 x collision static"], **note})
+    page.wait_for_function("document.getElementById('actor').innerText.includes('collision static')", timeout=WAIT_MS)
+    assert "D1" in page.inner_text("#actor")
+    fill = page.evaluate("(() => { const {width, marginLeft} = document.querySelector('.bar i').style;"
+                         " return [width, marginLeft]; })()")  # fmt: skip
+    assert fill == ["25%", "25%"]
+    assert page.evaluate("page.lines.map((line) => line.color.getHexString())") == ["c8102e", "1f9d45"]
+    assert page.evaluate("page.map.trail.length") > 1
+    page.keyboard.press("i")
+    assert not page.is_visible("#panel")
+    page.keyboard.press("m")
+    with page.expect_download() as kept:
+        page.keyboard.press("k")
+    assert kept.value.path().read_bytes().startswith(b"\x89PNG")
+    assert page.errors == []
     page.close()
 
 

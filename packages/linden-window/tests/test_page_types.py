@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[3]
-TYPESCRIPT = ROOT / ".venv" / "typescript" / "node_modules"
-PAGE = ROOT / "packages" / "linden-window" / "src" / "linden_window" / "page"
+TYPESCRIPT = Path(__file__).parents[3] / ".venv" / "typescript" / "node_modules"
+PAGE = Path(__file__).parents[1] / "src" / "linden_window" / "page"
 
 
 def test_types_of_the_page(tmp_path: Path) -> None:

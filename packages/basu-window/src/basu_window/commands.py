@@ -17,6 +17,18 @@ def add_watch(watch: argparse.ArgumentParser) -> None:
     )
     watch.add_argument("--map", type=Path, metavar="FILE.xodr", help="the map of the runs (default: the first run's)")
     watch.add_argument("--port", type=int, default=0, metavar="N", help="port of the page (default: any free one)")
+    watch.add_argument(
+        "--film",
+        type=Path,
+        metavar="FILE.mp4",
+        help="write a film of the runs without a screen, and end; needs Chromium",
+    )
+    watch.add_argument(
+        "--film-from", type=float, default=0.0, metavar="S", help="simulated time of the first picture (default: 0)"
+    )
+    watch.add_argument(
+        "--film-to", type=float, metavar="S", help="simulated time of the last picture (default: the end of the run)"
+    )
     watch.set_defaults(command=later("basu_window.browser.watch:run"))
 
 

@@ -1,10 +1,10 @@
-"""The output ``window``: the head-up display with the person before it, and recorded keys."""
+"""The output ``window``: the page of the browser with the person before it, and recorded keys."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu_window.hud.person_input import onlookers_for
+from basu_window.person_input import onlookers_for
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import BaseManager
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def check(_options: DriveOptions) -> None:
-    """Check nothing: `person_for` opens the devices before the drive and says what is missing."""
+    """Check nothing: `person_for` says before the drive what is missing."""
 
 
 def managers(options: DriveOptions, drive: Drive) -> list[BaseManager]:
-    """Return the managers of the window and of the recorded keys."""
+    """Return the managers of the page and of the recorded keys."""
     return onlookers_for(options, drive.live, drive.agent)

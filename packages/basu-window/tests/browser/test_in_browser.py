@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from basu.records.history.files import read_history
+from basu_fixtures import SHORT_ROUTE
 from browsers import running_browser
 from fakes.run_records import crashing, record, written
 from opendrive_texts import SIGNS_AND_LIGHTS
@@ -19,6 +20,9 @@ from window_pages import WAIT_MS, page_of
 BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
 PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],
   buttons: Array.from({{length: 17}}, (_, at) => ({{value: at === 7 ? {throttle} : at === 6 ? {brake} : 0}}))}}]"""
+
+WHEEL = """navigator.getGamepads = () => [{{id: "G29 Driving Force Racing Wheel", connected: true, mapping: "",
+  axes: [{steer}, 0, {throttle}, {brake}, 0, 0], buttons: Array.from({{length: 25}}, () => ({{value: 0}}))}}]"""
 
 
 @pytest.fixture(scope="module")
@@ -64,9 +68,8 @@ def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: 
 
 
 @pytest.mark.slow
-def test_a_person_drives_by_keyboard_and_gamepad(browser: Browser, tmp_path: Path) -> None:
-    route = Path(__file__).parents[4] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
-    words = ("run", "human", "--watch", "--routes", route, "--output", tmp_path)
+def test_a_person_drives_by_keyboard_gamepad_and_wheel(browser: Browser, tmp_path: Path) -> None:
+    words = ("run", "human", "--watch", "--routes", SHORT_ROUTE, "--output", tmp_path)
     with started(*words) as (process, address):
         page = page_of(browser, address + "?flat")
         speed = "(page.followed()?.speed ?? 0)"
@@ -82,6 +85,12 @@ def test_a_person_drives_by_keyboard_and_gamepad(browser: Browser, tmp_path: Pat
         page.evaluate(PAD.format(steer=0.0, throttle=0.8, brake=0))
         page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
         page.evaluate(PAD.format(steer=0.5, throttle=0, brake=1))
+        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        page.evaluate(WHEEL.format(steer=0, throttle=1, brake=1))  # its pedals rest at 1 and are pressed at -1
+        page.wait_for_timeout(200)
+        page.evaluate(WHEEL.format(steer=0.1, throttle=-1, brake=1))
+        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.evaluate(WHEEL.format(steer=0.1, throttle=1, brake=-1))
         page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
         assert "a person" in page.inner_text("#score")
         assert page.errors == []

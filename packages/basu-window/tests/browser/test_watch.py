@@ -63,7 +63,7 @@ def test_marks_and_panels_say_what_the_judgement_says() -> None:
 
 
 def arguments(*runs: Path) -> argparse.Namespace:
-    return argparse.Namespace(runs=list(runs), map=None, port=0)
+    return argparse.Namespace(runs=list(runs), map=None, port=0, film=None)
 
 
 def test_a_cut_record_gets_a_sentence(tmp_path: Path) -> None:

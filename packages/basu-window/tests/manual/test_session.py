@@ -54,7 +54,7 @@ def test_after_the_end_nothing_is_pressed() -> None:
 
 
 def test_a_tape_keeps_what_drives_and_passes_everything_on() -> None:
-    done = Input(Held.LEFT, (Strike.HELP, Strike.REVERSE))
+    done = Input(Held.LEFT, (Strike.QUIT, Strike.REVERSE))
     tape = RecordingSource(Session(setting=SETTING, inputs=(done,)))
     assert tape.read(0) == done
     assert tape.inputs == [Input(Held.LEFT, (Strike.REVERSE,))]

@@ -76,7 +76,7 @@ def load(group: str, name: str, what: str) -> Any:  # noqa: ANN401 - whatever th
     Args:
         group: one of the groups above.
         name: the name of the entry point.
-        what: what needs it, for the user: ``--hud``.
+        what: what needs it, for the user: ``--watch``.
 
     Raises:
         UserError: no plugin brings it.

@@ -15,7 +15,7 @@ VOLATILE = {"wall_s", "started", "first_server_frame"}  # of the meta: times, an
 
 @pytest.mark.parametrize(
     "options",
-    [RunOptions(workers=2, host="localhost"), RunOptions(workers=2, hud="map"), RunOptions(workers=2, keys="a.json")],
+    [RunOptions(workers=2, host="localhost"), RunOptions(workers=2, watch=True), RunOptions(workers=2, keys="a.json")],
 )
 def test_what_runs_cannot_share_is_refused(options: RunOptions) -> None:
     with pytest.raises(UserError, match="--workers"):

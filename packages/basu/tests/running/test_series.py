@@ -173,7 +173,7 @@ def test_every_declared_option_that_repeats_a_run_is_a_condition() -> None:
     declared = {field.flag for field in fields_of(RunOptions) if field.option.repeats and field.name not in RESOLVED}
     assert declared <= found.keys()
     assert {"--metrics", "--agent-memory", "--seed", "--vehicles"} <= declared
-    assert not {"--output", "--hud", "--series"} & found.keys()
+    assert not {"--output", "--watch", "--series"} & found.keys()
 
 
 def test_a_file_among_the_conditions_counts_by_its_contents(tmp_path: Path) -> None:

@@ -28,7 +28,6 @@ ANY = st.text(st.characters(exclude_categories=("C",)), min_size=1, max_size=12)
 )
 NAMES = st.text(st.characters(exclude_categories=("C",), exclude_characters=",=-"), min_size=1, max_size=12)
 SPECIAL: dict[str, st.SearchStrategy[Any]] = {
-    "hud_size": st.tuples(st.integers(640, 7680), st.integers(480, 4320)).map(list),
     "maps": st.lists(st.sampled_from([str(folder) for folder in Path(__file__).parents[:3]]), max_size=2),
     "sumo": st.sampled_from((None, SUMO_DEMAND, SUMO_RANDOM, SUMO_OFF)),  # a file would have to be there
 }
@@ -83,8 +82,6 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
             rivals.add(field.option.rival)
     if given.get("series") is None:
         given.pop("resume", None)
-    if given.get("hud") is None:
-        given.pop("hud_screenshot", None)
     if given.get("host") is not None:
         given.pop("maps", None)  # those of a simulator that basu starts
     else:
@@ -185,4 +182,4 @@ def test_a_flag_of_an_earlier_version_is_refused_with_what_replaces_it(
 ) -> None:
     with pytest.raises(SystemExit):
         main([*command, "--hud-camera", "96x64"])
-    assert "--hud-camera is no option any more: the camera's picture has half" in capsys.readouterr().err
+    assert "--hud-camera is no option any more: --watch shows the drive" in capsys.readouterr().err

@@ -42,7 +42,7 @@ def test_an_object_keeps_what_a_later_layer_does_not_name() -> None:
         ({"seed": True}, "c.json: options.seed is True; it must be a whole number"),
         ({"step_limit_s": 0}, "c.json: options.step_limit_s is 0 s; it must be above 0"),
         ({"scenario_files": "a.py"}, "c.json: options.scenario_files is 'a.py'; it must be a list"),
-        ({"hud": "mirror"}, "c.json: options.hud is 'mirror'; it must be one of camera, map"),
+        ({"track": "mirror"}, "c.json: options.track is 'mirror'; it must be one of world, objects, sensors"),
         (
             {"vehicles": 1, "traffic_density": 2.0},
             "c.json: options.vehicles and c.json: options.traffic_density exclude",
@@ -64,8 +64,8 @@ def test_a_complaint_about_python_names_the_keyword() -> None:
 
 
 def test_keywords_may_be_python_values() -> None:
-    found = from_keywords(RunOptions, output=Path("there"), scenario_files=(Path("a.py"),), hud_size=(800, 600))
-    assert (found.output, found.scenario_files, found.hud_size) == (Path("there"), (Path("a.py"),), (800, 600))
+    found = from_keywords(RunOptions, output=Path("there"), scenario_files=(Path("a.py"),), agent_writes=(Path("b"),))
+    assert (found.output, found.scenario_files, found.agent_writes) == (Path("there"), (Path("a.py"),), (Path("b"),))
     assert from_keywords(Scoring, penalties={Infraction.SPEEDING: 0.5}).penalties[Infraction.SPEEDING] == 0.5
     with pytest.raises(UserError, match=r"^agent is <class 'int'>; it must be a text, a number"):
         from_keywords(RunOptions, agent=int)

@@ -10,7 +10,7 @@ import socket
 import sys
 from typing import Any
 
-from linden_window.link import BLOB, FRAME, NOTE, PREFIX
+from linden_window.link import BLOB, FRAME, NOTE, PANE, PREFIX
 
 log = logging.getLogger("linden")
 LINGERS_S = 1.0
@@ -58,9 +58,9 @@ async def _serve(link: socket.socket, arguments: argparse.Namespace) -> int:
                 window.frame(content)
             elif kind == NOTE:
                 window.note(json.loads(content))
-            elif kind == BLOB:
+            elif kind in (PANE, BLOB):
                 name, _, file = content.partition(b"\n")
-                window.keep(name.decode(), file)
+                (window.pane if kind == PANE else window.keep)(name.decode(), file)
     except (asyncio.IncompleteReadError, ConnectionError):
         pass
     window.end()

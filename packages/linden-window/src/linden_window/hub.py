@@ -1,7 +1,7 @@
 """`Hub`: what pages are shown and what they have missed. Knows no socket and no clock of its own.
 
-A page takes notes in their order and the newest frame only: a page that reads slowly misses frames. If notes pile up
-before a page, it is closed with a sentence.
+A page takes notes in their order. It takes the newest frame, readings and measurements only: a page that reads slowly
+misses frames. If notes pile up before a page, it is closed with a sentence.
 """
 
 import asyncio
@@ -13,7 +13,10 @@ MOST_PAGES = 16
 """Each page costs the time to send a frame; ten people watch one world at most."""
 MOST_NOTES = 2000
 """Notes that may wait for one page: a slow page gets them with its next frame."""
-_KEPT = ("actors", "weather", "lights", "lamps", "settings", "route", "panel", "marks", "record", "end")
+_KEPT = (
+    "actors", "weather", "lights", "lamps", "settings", "route", "sensors", "signals", "panel", "marks",
+    "record", "end",
+)  # fmt: skip
 """Notes that a new page gets at once, the last of each type."""
 
 
@@ -23,6 +26,8 @@ class PageQueue:
     def __init__(self) -> None:
         self.notes: deque[str] = deque()
         self.frame: bytes | None = None
+        self.readings: str | None = None
+        self.panes: dict[str, bytes] = {}
         self.dropped = 0
         self.is_overrun = False
         self.wakes = asyncio.Event()
@@ -40,13 +45,28 @@ class PageQueue:
         self.frame = frame
         self.wakes.set()
 
+    def show_readings(self, text: str) -> None:
+        """Queue the figures of a drive in the place of older ones."""
+        self.readings = text
+        self.wakes.set()
+
+    def show_pane(self, name: str, packed: bytes) -> None:
+        """Queue a sensor's measurement in the place of an older one."""
+        self.panes[name] = packed
+        self.wakes.set()
+
     def take(self) -> list[str | bytes]:
         """Return all that waits, notes first."""
         taken: list[str | bytes] = [*self.notes]
         self.notes.clear()
+        if self.readings is not None:
+            taken.append(self.readings)
+            self.readings = None
         if self.frame is not None:
             taken.append(self.frame)
             self.frame = None
+        taken += self.panes.values()
+        self.panes.clear()
         self.wakes.clear()
         return taken
 
@@ -81,6 +101,10 @@ class Hub:
         """Send facts to all pages, and keep them for new ones if they describe the present."""
         kind = str(facts.get("type", ""))
         text = json.dumps(facts, separators=(",", ":"))
+        if kind == "readings":
+            for queue in self._pages:
+                queue.show_readings(text)
+            return
         if kind == "scene" and facts.get("number") != self._scene_number:
             self._scene_number, self._last = facts.get("number"), {}  # notes of the last world are out of date
         if kind == "scene" or kind in _KEPT:
@@ -92,3 +116,8 @@ class Hub:
         """Replace the frame that waits for each page by a newer one."""
         for queue in self._pages:
             queue.show(packed)
+
+    def pane(self, name: str, packed: bytes) -> None:
+        """Replace a sensor's measurement that waits for each page by a newer one."""
+        for queue in self._pages:
+            queue.show_pane(name, packed)

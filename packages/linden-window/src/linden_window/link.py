@@ -20,8 +20,8 @@ from linden.server.outgoing import Outgoing
 log = logging.getLogger("linden")
 
 PREFIX = struct.Struct("<cI")
-"""Kind of a message (``NOTE``, ``FRAME`` or ``BLOB``) and its length in bytes."""
-NOTE, FRAME, BLOB = b"J", b"F", b"B"
+"""Kind of a message (``NOTE``, ``FRAME``, ``PANE`` or ``BLOB``) and its length in bytes."""
+NOTE, FRAME, PANE, BLOB = b"J", b"F", b"P", b"B"
 MOST_WAITING = 64 * 1024 * 1024
 """More bytes than this waiting mean that the process of the pages has stopped; then the link ends."""
 _BUFFER = 1024 * 1024
@@ -78,6 +78,10 @@ class PageLink:
     def note(self, facts: dict[str, Any]) -> None:
         """Send facts; they wait if the socket is full."""
         self._send(NOTE, json.dumps(_finite(facts), separators=(",", ":"), allow_nan=False).encode())
+
+    def pane(self, name: str, packed: bytes) -> None:
+        """Send a sensor's measurement (:mod:`linden_window.panes`); it waits if the socket is full."""
+        self._send(PANE, name.encode() + b"\n" + packed)
 
     def blob(self, name: str, content: bytes) -> None:
         """Send a file that pages can fetch as ``record/NAME``; the content is compressed by gzip."""

@@ -51,6 +51,10 @@ class Window:
         """Send a frame of the server to all open pages."""
         self._hub.frame(packed)
 
+    def pane(self, name: str, packed: bytes) -> None:
+        """Send a sensor's measurement to all open pages."""
+        self._hub.pane(name, packed)
+
     def note(self, facts: dict[str, Any]) -> None:
         """Pass on facts; a map is made a scene first, in the background."""
         if facts.get("type") != "map":

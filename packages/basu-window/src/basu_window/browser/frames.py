@@ -103,10 +103,17 @@ def _actor(number: int, type_id: str, size: tuple[float, float], colour: tuple[i
 
 
 def route_note(route: Route, *, drives: bool) -> dict[str, Any]:
-    """Return the planned path, thinned, and which actor the page follows."""
+    """Return the planned path, thinned, with its stops and lines of signs and lights, and the actor to follow."""
     step = max(1, round(LINE_EVERY_M * len(route.points_m) / max(1.0, route.length_m)))
     points = np.round(route.points_m[::step], 2).tolist()
-    return {"type": "route", "ego": EGO_ID, "points": points, "drives": drives}
+    half_m = 0.5 * float(np.median(route.lane_width_m))
+    controls = [
+        {"kind": control.kind.value, "x": control.x_m, "y": control.y_m, "z": control.z_m, "yaw": control.yaw_rad}
+        for control in route.controls
+    ]
+    stops = [{"name": stop.name, "x": stop.x_m, "y": stop.y_m} for stop in route.stops]
+    path = {"points": points, "controls": controls, "half": half_m, "stops": stops}
+    return {"type": "route", "ego": EGO_ID, "drives": drives, **path}
 
 
 def words_of(evidence: Evidence) -> str:

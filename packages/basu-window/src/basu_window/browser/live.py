@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
 from basu.managers.observations import Neighbours, vehicle_of
 from basu.records.history.model import FRAME, Facts
+from basu.routing import ControlKind
 from basu_window.browser.frames import (
     Moment,
     actors_note,
@@ -22,8 +24,10 @@ from basu_window.browser.frames import (
     panel_note,
     route_note,
 )
-from basu_window.hud.hud import Pace
-from basu_window.hud.notices import Judge, Notices
+from basu_window.browser.judge import Judge
+from basu_window.browser.pace import Meter, Pace
+from basu_window.browser.readings import Around, note_of, read, setting_of
+from basu_window.browser.sensor_panes import pane
 from basu_window.manual.inputs import Strike
 from linden.errors import UserError as LindenError
 from linden_window import poses
@@ -38,6 +42,7 @@ if TYPE_CHECKING:
     from basu_window.manual.inputs import Person
 
 PANEL_EVERY_S = 0.5
+READINGS_EVERY_S = 0.1
 WEATHER_EVERY_S = 5.0
 WAITS_FOR_PAGE_S = 300.0
 """How long a drive by hand waits for a page: a person copies an address within a minute."""
@@ -60,10 +65,15 @@ class WatchManager(BaseManager):
         self._link: PageLink | None = None
         self._pages = 0
         self._known: set[int] = set()
-        self._notices = Notices()
-        self._judge = Judge(live.metrics, self._notices)
+        self._judge = Judge(live.metrics)
         self._pace = Pace()
-        self._panel_next_s = self._weather_next_s = 0.0
+        self._meter = Meter()
+        self._panel_next_s = self._weather_next_s = self._readings_next_s = 0.0
+        self._began_s = time.perf_counter()
+        self._was_manual = person.drives_first
+        self._wishes: dict[int, list[str]] = {}
+        self._shown: dict[str, int] = {}
+        self._signals: list[int] = []
         self._accelerations: list[float] = []
         self._marks = 0
 
@@ -85,6 +95,14 @@ class WatchManager(BaseManager):
         link.note({"type": "map", "name": name, "text": run.carla_map.to_opendrive()})
         self._tell_actors()
         link.note(route_note(run.route, drives=True))
+        sensors = [{"name": name, "type": type_id} for name, type_id in self._live.sensors.types.items()]
+        link.note({"type": "sensors", "sensors": sensors})
+        self._lights = [
+            run.world.get_traffic_light_from_opendrive_id(control.landmark_id)
+            if control.kind is ControlKind.TRAFFIC_LIGHT
+            else None
+            for control in run.route.controls
+        ]
         if self._person.live and self._person.drives_first:
             self._wait_for_page(link)
 
@@ -109,6 +127,7 @@ class WatchManager(BaseManager):
         if Strike.QUIT in self._person.latest.strikes:
             raise KeyboardInterrupt
         ego = frame.ego
+        self._meter.tick(now_s)
         self._accelerations.append(float(np.hypot(ego.acceleration_x_mps2, ego.acceleration_y_mps2)))
         if self._pages:
             self._show(link, frame, now_s)
@@ -128,8 +147,14 @@ class WatchManager(BaseManager):
             if order["order"] == "pages":
                 is_new, self._pages = order["count"] > self._pages, order["count"]
                 if is_new:
-                    self._panel_next_s = self._weather_next_s = 0.0
+                    self._panel_next_s = self._weather_next_s = self._readings_next_s = 0.0
+            elif order["order"] == "sensors":
+                names = order.get("names")
+                self._wishes[order["page"]] = [str(name) for name in names] if isinstance(names, list) else []
+                self._shown = {}
             else:
+                if order["order"] == "left":
+                    self._wishes.pop(order["page"], None)
                 self._devices.take(order)
 
     def _show(self, link: PageLink, frame: Frame, now_s: float) -> None:
@@ -151,6 +176,37 @@ class WatchManager(BaseManager):
             self._weather_next_s = now_s + WEATHER_EVERY_S
             weather = self._run.world.get_weather()
             link.note({"type": "weather", "weather": {name: getattr(weather, name) for name in _WEATHER}})
+            self._setting = setting_of(self._run, self._live, weather)
+        if now_s >= self._readings_next_s or is_last:
+            self._readings_next_s = now_s + READINGS_EVERY_S
+            self._show_readings(link, frame, rows, now_s)
+            self._show_sensors(link)
+
+    def _show_readings(self, link: PageLink, frame: Frame, rows: list[tuple[float, ...]], now_s: float) -> None:
+        """Send figures, the state of traffic lights, and a sentence if the driver has changed."""
+        ego = frame.ego
+        nearby = tuple((self._neighbours.met[int(row[1])], math.dist(row[2:4], (ego.x_m, ego.y_m))) for row in rows)
+        around = Around(
+            self._setting, self._neighbours.counts(), self._meter.ticks_per_s, nearby, now_s - self._began_s
+        )
+        link.note(note_of(read(self._run, self._live, frame, self._judge.latest, around), self._agent))
+        signals = [-1 if light is None else int(light.get_state()) for light in self._lights]
+        if signals != self._signals:
+            self._signals = signals
+            link.note({"type": "signals", "states": signals})
+        if self._live.agents.manual != self._was_manual:
+            self._was_manual = self._live.agents.manual
+            other = "The autopilot drives." if self._person.drives_first else "The agent drives."
+            link.note({"type": "says", "text": "A person drives." if self._was_manual else other})
+
+    def _show_sensors(self, link: PageLink) -> None:
+        """Send new measurements of the sensors that pages show; a link that is behind gets none."""
+        types, data = self._live.sensors.types, self._live.sensors.data
+        for name in {name for names in self._wishes.values() for name in names} & data.keys():
+            number, measured = data[name]
+            if self._shown.get(name) != number and not link.is_behind:
+                self._shown[name] = number
+                link.pane(name, pane(name, types[name], number, measured, self._run.carla_map))
 
     def _panel(self, frame: Frame) -> dict[str, Any]:
         ego, judged = frame.ego, self._judge.latest

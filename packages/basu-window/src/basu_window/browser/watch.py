@@ -14,6 +14,7 @@ from basu.output.report.documents import CONFIG_FILE
 from basu.records.history.files import lacks, read_history
 from basu.records.recording_files import MAP_FILE
 from basu.settings.resolve import resolve
+from basu_window.browser.film import check_film, write_film
 from basu_window.browser.frames import (
     actors_note,
     mark_of,
@@ -37,12 +38,14 @@ PANEL_EVERY_S = 1.0
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serve the page until Ctrl-C.
+    """Serve the page until Ctrl-C, or write a film of it.
 
     Raises:
-        UserError: a folder has no record, the runs are of different towns, or the port is taken.
+        UserError: a folder has no record, the runs are of different towns, the port is taken, or no film can be made.
     """
     folders: list[Path] = arguments.runs
+    if arguments.film is not None:
+        check_film(arguments.film)
     if len(folders) > MOST_RUNS:
         raise UserError(f"a page shows at most {MOST_RUNS} runs at once; name fewer than {len(folders)}")
     histories = [read_history(folder) for folder in folders]
@@ -56,6 +59,12 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError(str(error)) from error
     try:
         _send(link, folders, histories, text)
+        if arguments.film is not None:
+            end_s = float(max(history.frames["t_s"][-1] for history in histories))
+            until_s = end_s if arguments.film_to is None else min(end_s, arguments.film_to)
+            write_film(link.address, arguments.film, arguments.film_from, until_s)
+            print(f"film              {arguments.film}")  # noqa: T201 - what a command says to its user
+            return 0
         print(f"window            {link.address}", flush=True)  # noqa: T201 - what a command says to its user
         print("window            Ctrl-C ends it", flush=True)  # noqa: T201 - what a command says to its user
         while link.is_open:

@@ -8,9 +8,12 @@ by half its range a second up to 0.7. There the wheel snaps back when a key is l
 from __future__ import annotations
 
 import enum
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import carla
+
+if TYPE_CHECKING:
+    from basu_window.browser.page_input import PageInput
 
 
 class Held(enum.Flag):
@@ -29,15 +32,10 @@ class Strike(enum.Enum):
 
     REVERSE = "reverse"
     AUTOPILOT = "autopilot"
-    HELP = "help"
-    PANEL = "panel"
-    VIEW = "view"
-    SENSOR = "sensor"
-    SCREENSHOT = "screenshot"
     QUIT = "quit"
 
 
-DRIVING_STRIKES = frozenset({Strike.REVERSE, Strike.AUTOPILOT})  # the rest concern the window, not the vehicle
+DRIVING_STRIKES = frozenset({Strike.REVERSE, Strike.AUTOPILOT})  # the other one ends the run
 
 
 class Axes(NamedTuple):
@@ -63,7 +61,7 @@ class Input(NamedTuple):
 
 
 class InputSource(Protocol):
-    """Where a person's doing comes from: devices, or a recorded session."""
+    """Where a person's doing comes from: a page, or a recorded session."""
 
     def read(self, tick: int) -> Input:
         """What is done in ``tick``, which counts from 0 at the first step of the run; called once for each."""
@@ -122,16 +120,16 @@ class Person:
         drives_first: bool,
         taken_by_any_input: bool,
         live: bool,
-        devices: InputSource | None = None,
+        page: PageInput | None = None,
     ) -> None:
         self.source = source
-        self.devices = devices  # of the window; None without one
+        self.page = page  # None without one
         self._taken_by_any_input = taken_by_any_input
         self._hands = PedalsAndWheel()
         self._reverse = False
         self.driving = drives_first
         self.drives_first = drives_first
-        self.live = live  # at devices, so time has to pass as it does
+        self.live = live  # at a page, so the drive runs in real time
         self.latest = Input()
 
     def step(self, tick: int, dt_s: float, agents: carla.VehicleControl) -> carla.VehicleControl | None:

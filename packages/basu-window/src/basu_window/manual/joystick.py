@@ -58,7 +58,7 @@ def axes(layout: Layout, readings: Sequence[float], moved: AbstractSet[int], but
     Args:
         layout: which is which; an index that the device does not have reads as rest.
         readings: of all axes, -1 to 1.
-        moved: the axes that have moved since the start. SDL reads the others as 0, half a pedal: they are at rest.
+        moved: the axes that have moved since the start. The others read 0, half a pedal: they are at rest.
         buttons: whether each is down.
     """
 
@@ -94,7 +94,7 @@ def _named(sections: configparser.ConfigParser, device: str) -> str | None:
 def _layout(section: configparser.SectionProxy, where: str) -> Layout:
     """A section's values; what CARLA's files do not have is a wheel's."""
     try:
-        meanings = (("reverse", Strike.REVERSE), ("autopilot", Strike.AUTOPILOT), ("help", Strike.HELP))
+        meanings = (("reverse", Strike.REVERSE), ("autopilot", Strike.AUTOPILOT))
         layout = Layout(
             steer_axis=int(section["steering_wheel"]),
             throttle_axis=int(section["throttle"]),

@@ -79,18 +79,18 @@ class Session:
 
 
 class Played:
-    """A session that is played, with or without a window; the window's own keys go on working."""
+    """A session that is played, with or without a page; the page can still end the run."""
 
-    def __init__(self, session: Session, window: InputSource | None) -> None:
+    def __init__(self, session: Session, page: InputSource | None) -> None:
         self.session = session
-        self._window = window
+        self._page = page
 
     def read(self, tick: int) -> Input:
-        """The session's keys for the vehicle, the window's for itself."""
+        """The session's keys, and the page's key that ends the run."""
         done = self.session.read(tick)
-        if self._window is None:
+        if self._page is None:
             return done
-        struck = tuple(strike for strike in self._window.read(tick).strikes if strike not in DRIVING_STRIKES)
+        struck = tuple(strike for strike in self._page.read(tick).strikes if strike not in DRIVING_STRIKES)
         return done._replace(strikes=(*done.strikes, *struck))
 
 
@@ -102,7 +102,7 @@ class RecordingSource:
         self.inputs: list[Input] = []
 
     def read(self, tick: int) -> Input:
-        """Read and note; what concerns only the window is not noted."""
+        """Read and note; the key that ends the run is not noted."""
         done = self.source.read(tick)
         driving = tuple(strike for strike in done.strikes if strike in DRIVING_STRIKES)
         self.inputs.append(done._replace(strikes=driving))

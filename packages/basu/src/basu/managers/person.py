@@ -1,4 +1,4 @@
-"""The person at the wheel, as the benchmark knows one: a plugin brings the window, the devices and recorded keys."""
+"""The person at the wheel, as the benchmark knows one: a plugin brings the page and recorded keys."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Person(Protocol):
 
 
 def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
-    """Return the person at this drive's window or recorded keys; None where an agent drives unwatched.
+    """Return the person at this drive's page or recorded keys; None where an agent drives unwatched.
 
     ``by_hand`` says whether the person drives at first.
 
     Raises:
-        UserError: the plugin is not installed, no window can be opened, or no such session exists.
+        UserError: the plugin is not installed, or no such session exists.
     """
-    flags = {"--hud": options.hud, "--keys": options.keys, "--record-keys": options.record_keys}
+    flags = {"--keys": options.keys, "--record-keys": options.record_keys}
     given = ["--watch"] * options.watch + [flag for flag, value in flags.items() if value is not None]
     if not (given or by_hand):
         return None

@@ -41,17 +41,11 @@ class DriveOptions(WindowOptions, RecordOptions, SimulatorOptions, SumoOptions, 
 
     @property
     def shows_sensors(self) -> bool:
-        """Whether a window, a viewer, a bag or a topic shows what the agent's sensors measure."""
-        return self.hud is not None or self.viewer or self.is_ros
+        """Whether a page, a viewer, a bag or a topic shows what the agent's sensors measure."""
+        return self.watch or self.viewer or self.is_ros
 
     @property
     def needs_one_simulator(self) -> bool:
-        """Whether drives cannot be driven at the same time: they share a simulator, a window, keys or topics."""
+        """Whether drives cannot be driven at the same time: they share a simulator, a page, keys or topics."""
         live = self.viewer or self.watch or self.ros2 or self.ros1
-        return (
-            live
-            or self.host is not None
-            or self.hud is not None
-            or self.keys is not None
-            or self.record_keys is not None
-        )
+        return live or self.host is not None or self.keys is not None or self.record_keys is not None

@@ -1,1 +1,1 @@
-"""Everything that a user looks at: reports, the HUD window, Rerun, the progress bar."""
+"""Everything that a user looks at: reports, charts, the progress bar."""

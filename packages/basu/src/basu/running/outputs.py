@@ -39,7 +39,7 @@ class Output(Protocol):
 def _wanted(options: DriveOptions, *, has_person: bool) -> dict[str, str]:
     """Return the outputs of this project that a drive needs, each with what needs it."""
     ros = {"--ros2": options.ros2, "--ros1": options.ros1, "--rosbag": options.rosbag is not None}
-    keys = {"--hud": options.hud, "--keys": options.keys, "--record-keys": options.record_keys}
+    keys = {"--keys": options.keys, "--record-keys": options.record_keys}
     watched = "--watch" if options.watch else None
     found = {"window": watched or next((flag for flag, value in keys.items() if value is not None), None)}
     if has_person:

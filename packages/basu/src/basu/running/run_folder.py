@@ -183,7 +183,7 @@ def _notes(options: DriveOptions, loaded: FoundAgent) -> list[str]:
     """Return what keeps a run from being repeated, in sentences."""
     if loaded.file is not None and not loaded.file.is_file():
         return [f"{loaded.name} is a class of a notebook or program; a run is repeatable with the agent in a file"]
-    by_hand = options.hud is not None or options.watch or loaded.is_human
+    by_hand = options.watch or loaded.is_human
     if by_hand and options.keys is None and options.record_keys is None:
         return ["a person could drive, and the keys were not recorded; --record-keys FILE makes such a run repeatable"]
     return []

@@ -237,14 +237,12 @@ def test_sumo_drives_traffic_in_a_case(simulator: RunningServer, files: Path, tm
     assert result["sumo"] is not None
 
 
-def test_a_window_shows_a_case(
-    simulator: RunningServer, files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_page_shows_a_case(
+    simulator: RunningServer, files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pytest.importorskip("pygame")
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    words = ("--hud", "map", "--hud-screenshot", tmp_path / "window.png", "--stop-after", 1)
-    run(simulator, tmp_path, "goes_well", "--scenarios", files, *words)
-    assert (tmp_path / "window.png").read_bytes().startswith(b"\x89PNG")
+    pytest.importorskip("websockets")
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, "--watch", "--stop-after", 1)
+    assert "http://127.0.0.1:" in capsys.readouterr().out
 
 
 def test_a_class_places_the_other_actors_of_its_case(simulator: RunningServer, files: Path, tmp_path: Path) -> None:

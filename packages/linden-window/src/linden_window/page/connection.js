@@ -1,6 +1,7 @@
 // @ts-check
-/** The WebSocket to the program: notes as JSON, frames as bytes, orders back. */
+/** The WebSocket to the program: notes as JSON, frames and measurements as bytes, orders back. */
 
+import { PANE_MAGIC } from "./panes.js";
 import { Frame } from "./timeline.js";
 
 /** @typedef {Record<string, any> & {type: string}} Note */
@@ -10,11 +11,12 @@ const AGAIN_MS = 2000;
 export class Connection {
   /**
    * @param {(note: Note) => void} onNote @param {(frame: Frame) => void} onFrame
-   * @param {(sentence: string) => void} onLost
+   * @param {(pane: ArrayBuffer) => void} onPane @param {(sentence: string) => void} onLost
    */
-  constructor(onNote, onFrame, onLost) {
+  constructor(onNote, onFrame, onPane, onLost) {
     this.onNote = onNote;
     this.onFrame = onFrame;
+    this.onPane = onPane;
     this.onLost = onLost;
     this.bytes = 0;
     this.hasEnded = false;
@@ -34,7 +36,8 @@ export class Connection {
         this.onNote(note);
       } else {
         this.bytes += data.byteLength;
-        this.onFrame(new Frame(data));
+        if (new DataView(data).getUint32(0, true) === PANE_MAGIC) this.onPane(data);
+        else this.onFrame(new Frame(data));
       }
     };
     socket.onclose = ({ reason }) => {

@@ -1,12 +1,12 @@
 // @ts-check
 /** Keyboard, gamepad and steering wheel of a person who drives: sent to the program as they are. */
 
-/** Keys that work while they are down, as the program names them: basu.agents.manual.inputs.Held. */
+/** Keys that work while they are down, as the program names them: basu_window.manual.inputs.Held. */
 const HELD = /** @type {Record<string, string>} */ ({
   KeyW: "throttle", ArrowUp: "throttle", KeyS: "brake", ArrowDown: "brake", KeyA: "left", ArrowLeft: "left",
   KeyD: "right", ArrowRight: "right", Space: "hand_brake",
 });
-/** Keys that work once: basu.agents.manual.inputs.Strike. */
+/** Keys that work once: basu_window.manual.inputs.Strike. */
 const STRUCK = /** @type {Record<string, string>} */ ({ KeyQ: "reverse", KeyP: "autopilot", Escape: "quit" });
 const EACH_MS = 33;
 

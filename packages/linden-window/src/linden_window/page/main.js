@@ -8,8 +8,9 @@ import { Connection } from "./connection.js";
 import { controlOf } from "./control.js";
 import { DebugShapes } from "./debug.js";
 import { DrivingInput } from "./input.js";
-import { Map2d } from "./map2d.js";
-import { aboutActor, element, help, list, say, showScore, unsay } from "./panel.js";
+import { Map2d, colourOf, endsOf } from "./map2d.js";
+import { Panes } from "./panes.js";
+import { aboutActor, element, help, list, say, showReadings, showScore, unsay } from "./panel.js";
 import { Replay } from "./replay.js";
 import { Timeline } from "./timeline.js";
 import { World } from "./world.js";
@@ -64,7 +65,15 @@ class Page {
     this.bytesPerSecond = 0;
     this.firstPictureMs = 0;
     this.before = performance.now();
-    this.connection = new Connection((note) => this.note(note), (frame) => this.arrived(frame), (sentence) => say(sentence, true));
+    /** @type {import("./panel.js").ReadingsNote | null} */
+    this.readings = null;
+    /** @type {LineBasicMaterial[]} of the lines of signs and lights */
+    this.lines = [];
+    this.keepsPicture = false;
+    this.panes = new Panes((order) => this.connection.send(order));
+    this.connection = new Connection(
+      (note) => this.note(note), (frame) => this.arrived(frame), (pane) => this.panes.take(pane), (sentence) => say(sentence, true),
+    );
     this.input = new DrivingInput((order) => this.connection.send(order));
     this.control = controlOf((order) => this.connection.send(order));
     this.world.onLoaded = () => unsay(BUILDING);
@@ -73,6 +82,7 @@ class Page {
     element("map").addEventListener("click", (event) => this.clickMap(event));
     addEventListener("keydown", (event) => this.key(event));
     addEventListener("keyup", (event) => this.cameras.keys.delete(event.code));
+    document.body.classList.toggle("film", parameters.has("film"));
     this.flat(this.isFlat);
     const view = parameters.get("view");
     if (view !== null && VIEWS.includes(view)) this.view(view);
@@ -112,6 +122,11 @@ class Page {
         if (note.dropped) say(`A script draws more shapes at once than the page takes: ${note.dropped} are left out.`);
       },
       route: () => this.route(note),
+      signals: () => this.showSignals(note.states),
+      sensors: () => this.panes.describe(note.sensors),
+      readings: () => {
+        this.readings = note;
+      },
       panel: () => this.panels.push(note),
       marks: () => this.mark(note.marks),
       record: () => this.record(note),
@@ -137,10 +152,22 @@ class Page {
     this.control.show(note.control);
   }
 
-  /** @param {{ego: number, points: number[][], drives?: boolean}} note */
+  /**
+   * @param {{ego: number, points: number[][], controls: import("./map2d.js").Control[], half: number,
+   *   stops: {name: string, x: number, y: number}[], drives?: boolean}} note
+   */
   route(note) {
     this.ego = this.chosen = note.ego;
     this.map.route = note.points;
+    this.map.controls = note.controls;
+    this.map.half = note.half;
+    this.map.stops = note.stops;
+    this.lines = note.controls.map((control) => {
+      const ends = endsOf(control, note.half).map(([x, y]) => new Vector3(x, control.z + 0.3, y));
+      const material = new LineBasicMaterial({ color: colourOf(control, undefined) });
+      this.world.scene.add(new Line(new BufferGeometry().setFromPoints(ends), material));
+      return material;
+    });
     if (note.points.length) {
       const places = note.points.map(([x, y, z]) => new Vector3(x, z + 0.25, y));
       const line = new Line(new BufferGeometry().setFromPoints(places), new LineBasicMaterial({ color: 0x4c9be8 }));
@@ -149,6 +176,12 @@ class Page {
     }
     this.input.isOn = Boolean(note.drives);
     if (this.cameras.view === "orbit") this.view("chase");
+  }
+
+  /** @param {number[]} states of the route's lights, -1 for signs */
+  showSignals(states) {
+    this.map.signals = states;
+    this.lines.forEach((line, index) => line.color.set(colourOf(this.map.controls[index], states[index])));
   }
 
   /** @param {import("./replay.js").Mark[]} marks */
@@ -166,6 +199,10 @@ class Page {
     this.timeline.read(await frames.arrayBuffer());
     const told = await facts.json();
     this.panels = told.panels;
+    for (const frame of this.timeline.frames) {
+      const row = frame.row(this.ego);
+      if (row >= 0) this.map.pass(frame.f32[row * 8 + 1], frame.f32[row * 8 + 2]);
+    }
     this.replay.begin();
     this.mark(told.marks);
     if (told.notice) say(told.notice, true, Infinity);
@@ -228,6 +265,9 @@ class Page {
     else if (event.code === "KeyV") this.view(VIEWS[(VIEWS.indexOf(this.cameras.view) + 1) % VIEWS.length]);
     else if (event.code === "KeyF") this.next(event.shiftKey ? -1 : 1);
     else if (event.code === "KeyM") this.flat(!this.isFlat);
+    else if (event.code === "KeyN") this.panes.next();
+    else if (event.code === "KeyI") document.body.classList.toggle("bare");
+    else if (event.code === "KeyK") this.keepsPicture = true;
   }
 
   /** Follow another vehicle, or a walker where there is no vehicle. @param {number} step */
@@ -295,8 +335,26 @@ class Page {
     this.place(pose);
     if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks);
     else this.draw3d(dt, t, pose);
+    if (this.keepsPicture) this.keepPicture();
+    const driven = this.replay.isOn ? undefined : this.poses.find((each) => each.id === this.ego);
+    if (driven !== undefined) this.map.pass(driven.x, driven.y);
     this.pictures++;
     if (!this.firstPictureMs && (this.world.loaded || (this.isFlat && this.map.edges))) this.firstPictureMs = now;
+  }
+
+  /** Keep the picture that was just drawn as a file; WebGL forgets it with the next one. */
+  keepPicture() {
+    this.keepsPicture = false;
+    const canvas = /** @type {HTMLCanvasElement} */ (element(this.isFlat ? "map" : "picture"));
+    canvas.toBlob((blob) => {
+      if (blob === null) return;
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(blob);
+      link.download = `${this.mapName || "window"}.png`;
+      link.click();
+      URL.revokeObjectURL(link.href);
+      say(`The picture is kept as ${link.download}.`);
+    });
   }
 
   /** Look at where something happens, once. @param {Pose | null} pose */
@@ -344,11 +402,9 @@ class Page {
     const kinds = [...this.poses].map((pose) => this.actors.known.get(pose.id)?.kind);
     const count = (/** @type {string} */ kind) => kinds.filter((each) => each === kind).length;
     const clock = this.replay.isOn ? this.replay.clock : this.timeline.last;
-    const lines = [
-      { name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` },
-      { name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` },
-    ];
-    if (this.weather) lines.push({ name: "weather", value: this.weather });
+    const lines = [{ name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` }];
+    if (this.readings === null) lines.push({ name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` });
+    if (this.weather && this.readings === null) lines.push({ name: "weather", value: this.weather });
     lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
     if (!this.replay.isOn) lines.push({ name: "data", value: `${(this.bytesPerSecond / 1000).toFixed(0)} kB/s` });
     list(element("figures"), lines);
@@ -363,6 +419,8 @@ class Page {
     const actor = pose === null ? undefined : this.actors.known.get(pose.id);
     box.hidden = actor === undefined;
     if (actor === undefined || pose === null) return;
+    if (this.readings !== null && pose.id === this.ego && !this.replay.isOn) return showReadings(box, this.readings);
+    box.className = "";
     const heading = document.createElement("h2");
     heading.textContent = actor.type;
     const lines = document.createElement("div");

@@ -6,6 +6,24 @@
 
 const COLOURS = /** @type {Record<string, string>} */ ({ vehicle: "#1d5fa8", walker: "#a33b00", prop: "#7a7a7a" });
 const FOCUS = "#d0421b";
+const TRAIL_M = 1;
+/** Colours of lines to stop at by the kind of sign, and of lights by CARLA's number of their state. */
+const SIGNS = /** @type {Record<string, string>} */ ({ stop_sign: "#c8102e", yield_sign: "#d9a400" });
+const LIGHTS = ["#d0021b", "#e8b400", "#1f9d45"];
+const UNKNOWN = "#8a9099";
+
+/** @typedef {{kind: string, x: number, y: number, z: number, yaw: number}} Control */
+
+/** Return the colour of a line of the route. @param {Control} control @param {number | undefined} state of a light */
+export function colourOf(control, state) {
+  return SIGNS[control.kind] ?? LIGHTS[state ?? -1] ?? UNKNOWN;
+}
+
+/** Return both ends of a line across the lane. @param {Control} control @param {number} half width of the lane, m */
+export function endsOf(control, half) {
+  const x = -Math.sin(control.yaw) * half, y = Math.cos(control.yaw) * half;
+  return [[control.x - x, control.y - y], [control.x + x, control.y + y]];
+}
 
 export class Map2d {
   /** @param {HTMLCanvasElement} canvas */
@@ -16,6 +34,15 @@ export class Map2d {
     this.edges = null;
     /** @type {number[][]} */
     this.route = [];
+    /** @type {number[][]} the way that the vehicle under test has driven */
+    this.trail = [];
+    /** @type {Control[]} */
+    this.controls = [];
+    /** @type {number[]} */
+    this.signals = [];
+    /** @type {{name: string, x: number, y: number}[]} */
+    this.stops = [];
+    this.half = 1.7;
     this.centre = [0, 0];
     this.metresPerPixel = 0.35;
     this.hasFocus = false;
@@ -45,6 +72,42 @@ export class Map2d {
       }
       touches.set(event.pointerId, [event.clientX, event.clientY]);
     });
+  }
+
+  /** Remember where the vehicle under test was. @param {number} x @param {number} y */
+  pass(x, y) {
+    const before = this.trail[this.trail.length - 1];
+    if (before === undefined || Math.hypot(x - before[0], y - before[1]) >= TRAIL_M) this.trail.push([x, y]);
+  }
+
+  /** @param {number[][]} points @param {string} colour @param {number} width in m */
+  path(points, colour, width) {
+    const { context } = this;
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.lineJoin = "round";
+    context.beginPath();
+    points.forEach(([x, y], index) => (index ? context.lineTo(x, y) : context.moveTo(x, y)));
+    context.stroke();
+  }
+
+  /** Draw the planned and the driven path, lines to stop at, and stops. @param {CSSStyleDeclaration} style */
+  drawRoute(style) {
+    const { context } = this;
+    const pixel = this.metresPerPixel;
+    if (this.route.length) this.path(this.route, style.getPropertyValue("--planned"), Math.max(1.2, 4 * pixel));
+    if (this.trail.length) this.path(this.trail, style.getPropertyValue("--driven"), Math.max(0.4, 2 * pixel));
+    this.controls.forEach((control, index) => {
+      this.path(endsOf(control, this.half), colourOf(control, this.signals[index]), Math.max(0.5, 4 * pixel));
+    });
+    context.fillStyle = style.getPropertyValue("--second");
+    context.font = `${13 * pixel}px sans-serif`;
+    for (const stop of this.stops) {
+      context.beginPath();
+      context.arc(stop.x, stop.y, 6 * pixel, 0, 7);
+      context.fill();
+      context.fillText(stop.name, stop.x + 9 * pixel, stop.y + 4 * pixel);
+    }
   }
 
   /** @param {number} factor */
@@ -89,14 +152,7 @@ export class Map2d {
     context.lineWidth = 1.2 * this.metresPerPixel;
     context.strokeStyle = style.getPropertyValue("--soft");
     if (this.edges !== null) context.stroke(this.edges);
-    if (this.route.length) {
-      context.strokeStyle = style.getPropertyValue("--planned");
-      context.lineWidth = Math.max(1.2, 4 * this.metresPerPixel);
-      context.lineJoin = "round";
-      context.beginPath();
-      this.route.forEach(([x, y], index) => (index ? context.lineTo(x, y) : context.moveTo(x, y)));
-      context.stroke();
-    }
+    this.drawRoute(style);
     for (const pose of poses) this.actor(pose, actors.get(pose.id), pose.id === focus?.id);
     for (const mark of marks) {
       context.fillStyle = style.getPropertyValue("--alarm");

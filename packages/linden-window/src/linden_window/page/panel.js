@@ -3,7 +3,8 @@
 
 /** @typedef {import("./timeline.js").Pose} Pose */
 /** @typedef {import("./actors.js").Actor} Actor */
-/** @typedef {{name: string, value: string, bad?: boolean, bar?: number}} Line */
+/** @typedef {{name: string, value: string, bad?: boolean, bar?: number, turn?: number}} Line */
+/** @typedef {{groups: {name: string, lines: Line[]}[], impulses: number[], tally: string[]}} ReadingsNote */
 /** @typedef {{t: number, title: string, large?: string, lines: Line[], found: {text: string, bad?: boolean}[]}} ScorePanel */
 
 const SAYS_MS = 9000;
@@ -13,6 +14,9 @@ const KEYS = [
   ["F, Shift F", "follow the next or the previous vehicle"],
   ["drag, wheel", "turn and zoom; in the free view W A S D, E and C fly, Shift is faster"],
   ["M", "map in two dimensions, and back"],
+  ["N", "the agent's next sensor; after the last, none"],
+  ["I", "all figures, on and off"],
+  ["K", "keep a picture of the view as a file"],
   ["Space, ← →", "a record: play or stop, one frame back or ahead"],
   ["?", "this page"],
 ];
@@ -36,7 +40,15 @@ export function list(parent, lines) {
     const name = document.createElement("dt");
     const value = document.createElement("dd");
     name.textContent = line.name;
-    if (line.bar === undefined) value.textContent = line.value;
+    if (line.turn !== undefined) {
+      value.className = "bar";
+      const fill = document.createElement("i");
+      const share = Math.min(1, Math.max(-1, line.turn));
+      fill.style.width = `${Math.max(1, Math.round(50 * Math.abs(share)))}%`;
+      fill.style.marginLeft = `${Math.round(50 + 50 * Math.min(0, share))}%`;
+      value.append(fill);
+      value.title = line.value;
+    } else if (line.bar === undefined) value.textContent = line.value;
     else {
       value.className = "bar";
       const fill = document.createElement("i");
@@ -107,6 +119,52 @@ export function aboutActor(actor, pose) {
   }
   lines.push({ name: "place, m", value: `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}, ${pose.z.toFixed(1)}` });
   return lines;
+}
+
+/** Show the figures of a drive. @param {HTMLElement} box @param {ReadingsNote} readings */
+export function showReadings(box, readings) {
+  box.className = "readings";
+  /** @type {HTMLElement[]} */
+  const parts = [];
+  for (const group of readings.groups) {
+    if (group.name) parts.push(heading(group.name));
+    const lines = document.createElement("div");
+    list(lines, group.lines);
+    parts.push(lines);
+  }
+  parts.push(heading("Collisions"), graphOf(readings.impulses));
+  for (const text of readings.tally) {
+    const line = document.createElement("div");
+    line.className = "bad";
+    line.textContent = text;
+    parts.push(line);
+  }
+  box.replaceChildren(...parts);
+}
+
+/** @param {string} text */
+function heading(text) {
+  const made = document.createElement("h2");
+  made.textContent = text;
+  return made;
+}
+
+/** Return the graph of the collision sensor's latest ticks, the newest on the right. @param {number[]} impulses in N s */
+function graphOf(impulses) {
+  const canvas = document.createElement("canvas");
+  canvas.width = impulses.length;
+  canvas.height = 22;
+  canvas.className = "graph";
+  const most = Math.max(1, ...impulses);
+  canvas.title = `largest impulse of the last ${impulses.length} ticks: ${Math.max(0, ...impulses).toFixed(0)} N s`;
+  canvas.setAttribute("aria-label", canvas.title);
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--alarm");
+  impulses.forEach((impulse, at) => {
+    const high = impulse > 0 ? Math.max(2, (20 * impulse) / most) : 0;
+    context.fillRect(at, 22 - high, 2, high);
+  });
+  return canvas;
 }
 
 /** @param {ScorePanel} panel */

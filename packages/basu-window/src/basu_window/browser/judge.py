@@ -1,4 +1,4 @@
-"""Notices during a run: lines that fade, the score so far, and infractions as they happen."""
+"""The judgement of a drive while it lasts: score so far, infractions, and the latest collisions."""
 
 from __future__ import annotations
 
@@ -16,34 +16,9 @@ if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores
 
-FADE_S = 5.0
-LINES = 5
 EVERY_S = 0.5  # the least time between two judgements
 SHARE = 0.05  # of the wall time, at most, goes into judging: a copy of the record takes longer the longer it is
 WINDOW_TICKS = 200  # of the graph of collisions
-
-
-class Notice(NamedTuple):
-    """A line, and since when in wall time it is shown."""
-
-    text: str
-    since_s: float
-    bad: bool
-
-
-class Notices:
-    """The latest lines."""
-
-    def __init__(self) -> None:
-        self._lines: list[Notice] = []
-
-    def add(self, text: str, now_s: float, *, bad: bool = False) -> None:
-        """Tell something."""
-        self._lines = [*self._lines, Notice(text, now_s, bad)][-LINES:]
-
-    def shown(self, now_s: float) -> list[tuple[Notice, float]]:
-        """Return what is to be seen, the oldest first, with how clearly: 1 at first, 0 when it is gone."""
-        return [(line, 1.0 - age) for line in self._lines if (age := (now_s - line.since_s) / FADE_S) < 1.0]
 
 
 class Judgement(NamedTuple):
@@ -67,24 +42,18 @@ class Judgement(NamedTuple):
 
 
 class Judge:
-    """Judges now and then, and tells what is new."""
+    """Judges the record so far, twice a second at most."""
 
-    def __init__(self, metrics: MetricsManager, notices: Notices) -> None:
-        self._metrics, self._notices = metrics, notices
+    def __init__(self, metrics: MetricsManager) -> None:
+        self._metrics = metrics
         self._next_s = 0.0
-        self._told: set[tuple[str, int]] = set()
         self.latest = Judgement()
 
     def refresh(self, now_s: float, *, anyway: bool = False) -> None:
-        """Judge what is recorded until now, where that is due; ``now_s`` is of ``time.perf_counter``."""
+        """Judge the record so far, if that is due; ``now_s`` is of ``time.perf_counter``."""
         if now_s < self._next_s and not anyway:
             return
         found = self._metrics.infractions_so_far()
-        for evidence in found:
-            key = (evidence.kind.value, evidence.tick)
-            if key not in self._told:
-                self._told.add(key)
-                self._notices.add(f"{evidence.kind.value.replace('_', ' ')}: {evidence.detail}", now_s, bad=True)
         self.latest = Judgement(self._metrics.scores_so_far(), found, _contacts(self._metrics))
         self._next_s = now_s + max(EVERY_S, (time.perf_counter() - now_s) / SHARE)
 

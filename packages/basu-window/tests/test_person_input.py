@@ -4,41 +4,34 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import pygame
 import pytest
 
 from basu.cli import main
-from basu.errors import SimulatorError, UserError
+from basu.errors import UserError
 from basu.options.run import RunOptions
-from basu_window.hud.person_input import KeysManager, person_for
-from basu_window.hud.sensor_view import ChaseCamera
 from basu_window.manual.inputs import Held, Input
 from basu_window.manual.session import Played, RecordingSource, Session, Setting, read_session
+from basu_window.person_input import KeysManager, person_for
 
 SESSION = "data/human_session.json"
-
-
-@pytest.fixture(autouse=True)
-def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
-        monkeypatch.delenv(name, raising=False)
-    pygame.display.quit()
 
 
 def test_no_actor_sits_before_an_agent_that_is_not_watched() -> None:
     assert person_for(RunOptions(), by_hand=False) is None
 
 
-@pytest.mark.parametrize(("options", "by_hand"), [(RunOptions(hud="map"), False), (RunOptions(agent="human"), True)])
-def test_a_window_without_a_display_is_refused_before_anything_starts(options: RunOptions, *, by_hand: bool) -> None:
-    with pytest.raises(UserError, match="no window can be opened here"):
-        person_for(options, by_hand=by_hand)
+@pytest.mark.parametrize(("options", "by_hand"), [(RunOptions(watch=True), False), (RunOptions(agent="human"), True)])
+def test_a_person_acts_at_a_page_and_human_needs_no_option_for_it(options: RunOptions, *, by_hand: bool) -> None:
+    person = person_for(options, by_hand=by_hand)
+    assert person is not None
+    assert person.page is not None
+    assert (person.driving, person.live) == (by_hand, True)
 
 
 def test_keys_are_played_without_a_window_and_without_waiting() -> None:
     person = person_for(RunOptions(agent="human", keys=SESSION), by_hand=True)
     assert person is not None
-    assert (person.driving, person.live) == (True, False)
+    assert (person.driving, person.live, person.page) == (True, False, None)
 
 
 def test_under_an_agent_a_session_begins_with_the_agent() -> None:
@@ -48,7 +41,7 @@ def test_under_an_agent_a_session_begins_with_the_agent() -> None:
 
 
 def test_recording_needs_an_actor_one_that_does_something() -> None:
-    with pytest.raises(UserError, match="there is no window; add --watch or --hud"):
+    with pytest.raises(UserError, match="there is no page; add --watch"):
         person_for(RunOptions(record_keys=Path("keys.json")), by_hand=False)
 
 
@@ -76,30 +69,19 @@ def test_a_run_that_was_never_set_up_leaves_no_session(tmp_path: Path) -> None:
     assert not (tmp_path / "keys.json").exists()
 
 
-def test_a_simulator_without_cameras_says_so() -> None:
-    def find(_name: str) -> None:
-        raise IndexError("blueprint 'sensor.camera.rgb' not found")
-
-    spot = SimpleNamespace(x=0.0, y=0.0, z=0.7)
-    vehicle = SimpleNamespace(bounding_box=SimpleNamespace(location=spot, extent=spot))
-    world = SimpleNamespace(get_blueprint_library=lambda: SimpleNamespace(find=find))
-    run: Any = SimpleNamespace(world=world, vehicle=vehicle, timeout_s=1.0)
-    with pytest.raises(SimulatorError, match=r"no camera: blueprint 'sensor\.camera\.rgb' not found"):
-        ChaseCamera(run, (64, 48), 0.0)
-
-
 @pytest.mark.parametrize(
-    ("arguments", "sentence"),
+    ("flag", "words"),
     [
-        (["--hud", "basic"], "an agent is named before --hud, as in `basu run basic --hud`"),
-        (["basic", "--hud", "--hud-size", "big"], "--hud-size big: write WIDTHxHEIGHT"),
-        (["basic", "--hud", "--hud-size", "10x10"], "--hud-size 10x10: it may be from 640x480 to 7680x4320"),
-        (["basic", "--hud-screenshot", "a.png"], "takes a picture of the window; add --hud"),
-        (["human"], "no window can be opened here"),
+        (["--hud"], "--hud is no option any more: --watch shows the drive, its sensors and its figures in a page"),
+        (["--hud", "map"], "--hud is no option any more: --watch shows"),
+        (["--hud-size", "800x600"], "--hud-size is no option any more: the page has the size of the browser's window"),
+        (["--hud-screenshot", "a.png"], "--hud-screenshot is no option any more: press K in the page of --watch"),
     ],
 )
-def test_a_mistake_is_one_sentence(capsys: pytest.CaptureFixture[str], arguments: list[str], sentence: str) -> None:
-    assert main(["run", *arguments]) == 2
-    said = capsys.readouterr().err
-    assert sentence in said
-    assert len(said.splitlines()) == 1
+@pytest.mark.parametrize("command", [["run", "basic"], ["scenario", "run", "all"]])
+def test_options_of_the_former_window_name_the_page(
+    capsys: pytest.CaptureFixture[str], command: list[str], flag: list[str], words: str
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*command, *flag])
+    assert words in capsys.readouterr().err

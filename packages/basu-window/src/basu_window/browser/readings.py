@@ -1,9 +1,9 @@
-"""`Readings`, the HUD's values in one frame: run, time, motion, control, GNSS, IMU, route, judgement, actors nearby."""
+"""The figures of a drive for the page: setting, motion, controls, GNSS, IMU, collisions, time, actors nearby."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
@@ -12,10 +12,14 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import Ego, Frame, Run
-    from basu_window.hud.notices import Judgement
+    from basu_window.browser.judge import Judgement
 
 GRAVITY_MPS2 = 9.81
 MPS_PER_KMH = 1.0 / 3.6
+MPS_PER_MPH = 0.44704
+OVER_MPS = 0.25
+"""Above the limit by more than this, the speed turns red: a display of whole mph hides less."""
+GEARS = {-1: "R", 0: "N"}
 SENSOR_WORDS = {
     "lidar": "lidar",
     "camera": "camera",
@@ -61,24 +65,15 @@ class Setting(NamedTuple):
     sensors: str
 
 
-class Rates(NamedTuple):
-    """How fast the run goes, over the last second or two of wall time."""
-
-    ticks_per_s: float  # steps of the server
-    pictures_per_s: float  # drawings of this window
-    real_time: float  # simulated seconds a second
-
-
 class Readings(NamedTuple):
-    """All of one frame."""
+    """The figures of one frame."""
 
     vehicle: str
+    driver: str
     setting: Setting
     traffic: tuple[int, int]  # other vehicles and walkers in the world
-    rates: Rates
-    manual: bool
-    autopilot: bool  # whether the agent drives in a person's run
-    tick: int
+    ticks_per_s: float  # of wall time
+    real_time: float  # simulated seconds for each second of wall time
     simulated_s: float
     wall_s: float
     speed_mps: float
@@ -89,35 +84,34 @@ class Readings(NamedTuple):
     at_m: tuple[float, float, float]
     fix: Fix
     inertial: Inertial
-    along_m: float  # of the route
-    length_m: float
-    lateral_m: float
-    judgement: Judgement
+    lateral_m: float  # from the route
+    impulses_ns: tuple[float, ...]  # of the latest ticks, the newest last
+    tally: tuple[str, ...]  # infractions in words
     nearby: tuple[tuple[str, float], ...]  # blueprint id and distance in m, the nearest first
 
 
 class Around(NamedTuple):
-    """Data of the window itself for the instruments."""
+    """Data of the window itself for the readings."""
 
     setting: Setting
     traffic: tuple[int, int]
-    rates: Rates
+    ticks_per_s: float
     nearby: tuple[tuple[str, float], ...]
     wall_s: float
 
 
 def read(run: Run, live: Live, frame: Frame, judgement: Judgement, around: Around) -> Readings:
-    """Read all instruments, without a call of the server."""
+    """Return all figures of a frame, without a call of the server."""
     ego, person = frame.ego, live.agents.person
     limit_mps = float(run.vehicle.get_speed_limit()) * MPS_PER_KMH
+    other = "autopilot" if person is not None and person.drives_first else "agent"
     return Readings(
         vehicle=run.vehicle.type_id,
+        driver="a person" if live.agents.manual else other,
         setting=around.setting,
         traffic=around.traffic,
-        rates=around.rates,
-        manual=live.agents.manual,
-        autopilot=person is not None and person.drives_first and not live.agents.manual,
-        tick=frame.tick,
+        ticks_per_s=around.ticks_per_s,
+        real_time=around.ticks_per_s * run.step_s,
         simulated_s=frame.tick * run.step_s,
         wall_s=around.wall_s,
         speed_mps=ego.speed_mps,
@@ -128,12 +122,76 @@ def read(run: Run, live: Live, frame: Frame, judgement: Judgement, around: Aroun
         at_m=(ego.x_m, ego.y_m, ego.z_m),
         fix=_fix(run, live, ego),
         inertial=_inertial(live, ego),
-        along_m=live.routes.progress.s_m,
-        length_m=run.route.length_m,
         lateral_m=live.routes.progress.lateral_m,
-        judgement=judgement,
+        impulses_ns=tuple(judgement.impulses(frame.tick).tolist()),
+        tally=tuple(judgement.tally()),
         nearby=around.nearby,
     )
+
+
+def note_of(shown: Readings, agent: str) -> dict[str, Any]:
+    """Return the readings as a note for the page: groups of lines, and the graph of collisions."""
+    setting, control, (vehicles, walkers) = shown.setting, shown.control, shown.traffic
+    too_fast = shown.limit_mps is not None and shown.speed_mps > shown.limit_mps + OVER_MPS
+    limit = "none" if shown.limit_mps is None else f"{shown.limit_mps / MPS_PER_MPH:.0f} mph"
+    lamps = [name for name, lit in (("reverse", control.reverse), ("hand brake", control.hand_brake)) if lit]
+    force, spin = shown.inertial
+    groups = [
+        ("", [
+            _line("driver", f"{shown.driver} ({agent})" if shown.driver == "agent" else shown.driver),
+            _line("vehicle", shown.vehicle.removeprefix("vehicle.")),
+            _line("map, route", f"{setting.town}, {setting.route}"),
+            _line("weather", setting.weather),
+            _line("sensors", setting.sensors),
+            _line("traffic", f"{vehicles} vehicles, {walkers} walkers"),
+        ]),
+        ("Motion", [
+            _line("speed", f"{shown.speed_mps / MPS_PER_MPH:.0f} mph, {3.6 * shown.speed_mps:.0f} km/h", bad=too_fast),
+            _line("limit", limit, bad=too_fast),
+            _line("throttle", f"{control.throttle:.2f}", bar=control.throttle),
+            _line("brake", f"{control.brake:.2f}", bar=control.brake),
+            _line("steer", f"{control.steer:+.2f}", turn=control.steer),
+            _line("gear", ", ".join([GEARS.get(shown.gear, f"D{shown.gear}"), *lamps])),
+        ]),
+        ("Place", [
+            _line("heading", f"{shown.heading_deg:.0f}° {compass_point(shown.heading_deg)}"),
+            _line("location", ", ".join(f"{value:.1f}" for value in shown.at_m) + " m"),
+            _line("GNSS", ", ".join(degrees(shown.fix, 6))),
+            _line("acceleration", f"{signed(force)} m/s²"),
+            _line("turn rate", f"{signed(spin)} °/s"),
+            _line("off the route", f"{shown.lateral_m:+.2f} m"),
+        ]),
+        ("Time", [
+            _line("simulated, wall", f"{clock(shown.simulated_s)}, {clock(shown.wall_s)}"),
+            _line("server", f"{shown.ticks_per_s:.0f} steps/s, {factor(shown.real_time)} real time"),
+        ]),
+        ("Nearest", [_line(type_id.split(".", 1)[-1], f"{away_m:.0f} m") for type_id, away_m in shown.nearby[:5]]),
+    ]  # fmt: skip
+    return {
+        "type": "readings",
+        "groups": [{"name": name, "lines": lines} for name, lines in groups if lines],
+        "impulses": [round(value, 1) for value in shown.impulses_ns],
+        "tally": shown.tally,
+    }
+
+
+def _line(name: str, value: str, **how: float) -> dict[str, Any]:
+    return {"name": name, "value": value, **how}
+
+
+def factor(value: float) -> str:
+    """Return a factor with two figures or so."""
+    return f"{value:.2f}x" if value < 1.0 else f"{value:.1f}x"
+
+
+def clock(seconds: float) -> str:
+    """Return minutes and seconds."""
+    return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
+
+
+def signed(values: tuple[float, ...]) -> str:
+    """Return values to one decimal place; a value that rounds to nothing has no minus before it."""
+    return ", ".join(f"{round(value, 1) + 0.0:+.1f}" for value in values)
 
 
 def heading_deg(yaw_rad: float) -> float:
@@ -156,11 +214,9 @@ def felt(ego: Ego) -> Inertial:
     return Inertial((ahead, right, ego.acceleration_z_mps2 + GRAVITY_MPS2), (roll, pitch, yaw))
 
 
-def setting_of(run: Run, live: Live) -> Setting:
-    """Return where and in what the agent drives; asks the server for the weather."""
-    return Setting(
-        run.route.town, run.route.id, weather_words(run.world.get_weather()), sensor_words(live.sensors.types)
-    )
+def setting_of(run: Run, live: Live, weather: carla.WeatherParameters) -> Setting:
+    """Return where and in what the agent drives, in words."""
+    return Setting(run.route.town, run.route.id, weather_words(weather), sensor_words(live.sensors.types))
 
 
 def weather_words(weather: carla.WeatherParameters) -> str:

@@ -1,4 +1,4 @@
-"""The person's input in a run: devices or a recorded session of keys, and the window that belongs to it."""
+"""The person's input in a run: a page of the browser or a recorded session of keys, and the managers for both."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from basu.files import find
 from basu.managers.base_manager import BaseManager
 from basu_window.browser.live import WatchManager
 from basu_window.browser.page_input import PageInput
-from basu_window.hud.hud import Hud
-from basu_window.manual.devices import Devices, check_display
 from basu_window.manual.inputs import Person
 from basu_window.manual.session import Played, RecordingSource, Session, Setting, read_session, write_session
 
@@ -25,29 +23,24 @@ if TYPE_CHECKING:
 
 
 def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
-    """Return the person at this run's window or recorded keys; None where an agent drives unwatched.
+    """Return the person at this run's page or recorded keys; None where an agent drives unwatched.
 
-    ``by_hand`` says whether the person drives at first.
+    ``by_hand`` says whether the person drives at first; without a session of keys, that needs a page.
 
     Raises:
-        UserError: no window can be opened, or there is no such session.
+        UserError: keys are to be recorded and there is no page, or there is no such session.
     """
-    for path in (options.record_keys, options.hud_screenshot):
-        if path is not None and not path.resolve().parent.is_dir():
-            raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
-    devices: InputSource | None = None
-    if options.watch:
-        devices = PageInput()
-    elif _has_window(options, by_hand=by_hand):
-        check_display()
-        devices = Devices()
+    path = options.record_keys
+    if path is not None and not path.resolve().parent.is_dir():
+        raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
+    page = PageInput() if options.watch or (by_hand and options.keys is None) else None
     source: InputSource
     if options.keys is not None:
-        source = Played(read_session(find(options.keys, "session of keys")), devices)
-    elif devices is not None:
-        source = devices
+        source = Played(read_session(find(options.keys, "session of keys")), page)
+    elif page is not None:
+        source = page
     elif options.record_keys is not None:
-        raise UserError("--record-keys records what a person does, and there is no window; add --watch or --hud")
+        raise UserError("--record-keys records what a person does, and there is no page; add --watch")
     else:
         return None
     return Person(
@@ -55,28 +48,21 @@ def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
         drives_first=by_hand,
         taken_by_any_input=by_hand,
         live=options.keys is None,
-        devices=devices,
+        page=page,
     )
 
 
 def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseManager]:
-    """Return the managers of the window, which names the agent, and of the recorded keys."""
+    """Return the managers of the page, which names the agent, and of the recorded keys."""
     person = live.agents.person
     if not isinstance(person, Person):
         return []
     found: list[BaseManager] = []
     if options.keys is not None or options.record_keys is not None:
         found.append(KeysManager(person.source, options.record_keys))
-    if isinstance(person.devices, PageInput):
-        found.append(WatchManager(live, person, person.devices, agent, print))
-    elif _has_window(options, by_hand=person.drives_first):
-        found.append(Hud(live, person, options, agent))
+    if person.page is not None:
+        found.append(WatchManager(live, person, person.page, agent, print))
     return found
-
-
-def _has_window(options: DriveOptions, *, by_hand: bool) -> bool:
-    """Whether there is one: a person at devices needs it."""
-    return options.hud is not None or (by_hand and options.keys is None)
 
 
 class KeysManager(BaseManager):

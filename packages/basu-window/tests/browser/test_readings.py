@@ -1,4 +1,4 @@
-"""Claims about what the instruments show."""
+"""Claims about the figures of a drive in the page."""
 
 import math
 from types import SimpleNamespace
@@ -8,15 +8,21 @@ import carla
 import pytest
 
 from basu.managers.base_manager import Ego
-from basu_window.hud.hud import Meter
-from basu_window.hud.panel import clock, signed
-from basu_window.hud.readings import (
+from basu_window.browser.pace import Meter
+from basu_window.browser.readings import (
     GRAVITY_MPS2,
+    Fix,
+    Inertial,
+    Readings,
+    Setting,
+    clock,
     compass_point,
     felt,
     fix_of,
     heading_deg,
+    note_of,
     sensor_words,
+    signed,
     true_latitude_deg,
     weather_words,
 )
@@ -103,7 +109,74 @@ def test_rates_are_those_of_the_last_two_seconds() -> None:
         meter.tick(n * 0.5)
     for n in range(101):
         meter.tick(20.0 + n * 0.02)
-        if n % 5 == 0:
-            meter.picture(20.0 + n * 0.02)
-    assert meter.rates(0.05) == pytest.approx((50.0, 10.0, 2.5), rel=0.02)
-    assert Meter().rates(0.05) == (0.0, 0.0, 0.0)
+    assert meter.ticks_per_s == pytest.approx(50.0, rel=0.02)
+    assert Meter().ticks_per_s == 0.0
+
+
+SHOWN = Readings(
+    vehicle="vehicle.tesla.model3",
+    driver="agent",
+    setting=Setting("Linden", "leap", "ClearSunset", "3 cameras, lidar, GNSS, IMU"),
+    traffic=(40, 12),
+    ticks_per_s=21.4,
+    real_time=1.07,
+    simulated_s=65.0,
+    wall_s=13.0,
+    speed_mps=13.0,
+    limit_mps=11.176,
+    gear=-1,
+    control=carla.VehicleControl(throttle=0.5, steer=-0.25, hand_brake=True, reverse=True),
+    heading_deg=44.0,
+    at_m=(1.0, 2.0, 3.0),
+    fix=Fix(39.99, -82.97, 249.0),
+    inertial=Inertial((0.0, 0.0, 9.81), (0.0, 0.0, 0.0)),
+    lateral_m=-0.1,
+    impulses_ns=(0.0, 120.04),
+    tally=("1 x collision static",),
+    nearby=tuple((f"vehicle.audi.tt{n}", 5.0 + n) for n in range(16)),
+)
+
+
+def lines_of(shown: Readings) -> dict[str, dict[str, Any]]:
+    return {line["name"]: line for group in note_of(shown, "basic")["groups"] for line in group["lines"]}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("driver", "agent (basic)"),
+        ("map, route", "Linden, leap"),
+        ("weather", "ClearSunset"),
+        ("sensors", "3 cameras, lidar, GNSS, IMU"),
+        ("traffic", "40 vehicles, 12 walkers"),
+        ("speed", "29 mph, 47 km/h"),
+        ("limit", "25 mph"),
+        ("throttle", "0.50"),
+        ("steer", "-0.25"),
+        ("gear", "R, reverse, hand brake"),
+        ("heading", "44° NE"),
+        ("location", "1.0, 2.0, 3.0 m"),
+        ("GNSS", "39.990000° N, 82.970000° W"),
+        ("acceleration", "+0.0, +0.0, +9.8 m/s²"),
+        ("turn rate", "+0.0, +0.0, +0.0 °/s"),
+        ("off the route", "-0.10 m"),
+        ("simulated, wall", "1:05.0, 0:13.0"),
+        ("server", "21 steps/s, 1.1x real time"),
+        ("audi.tt0", "5 m"),
+    ],
+)
+def test_each_figure_has_a_line(name: str, value: str) -> None:
+    assert lines_of(SHOWN)[name]["value"] == value
+
+
+def test_the_five_nearest_actors_the_collisions_and_the_tally_are_in_the_note() -> None:
+    note = note_of(SHOWN, "basic")
+    assert len(note["groups"][-1]["lines"]) == 5
+    assert (note["impulses"], note["tally"]) == ([0.0, 120.0], ("1 x collision static",))
+
+
+def test_the_limit_turns_red_where_it_is_exceeded() -> None:
+    assert lines_of(SHOWN)["speed"]["bad"]
+    assert not lines_of(SHOWN._replace(speed_mps=11.0))["speed"]["bad"]
+    free = lines_of(SHOWN._replace(limit_mps=None))
+    assert (free["limit"]["value"], free["speed"]["bad"]) == ("none", False)

@@ -1,0 +1,115 @@
+"""A film of a recorded run: a browser without a screen shows each moment, and PyAV encodes the pictures."""
+
+from __future__ import annotations
+
+import io
+import shutil
+import sys
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from tqdm import tqdm
+
+from basu.errors import UserError
+from basu.extras import require
+from basu_window.extras import PLAYWRIGHT, PYAV
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+PICTURES_PER_S = 10
+SIZE_PX = 1280, 720
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SWITCHES = (
+    # root has no sandbox; WebGL is computed by the processor where there is no graphics card
+    "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+)  # fmt: skip
+_SCENE_MS = 180_000.0
+_IS_READY = """globalThis.page?.replay.isOn && page.poses.length > 0
+    && (page.isFlat || (page.world.loaded > 0 && page.world.waiting.length + page.world.loading === 0))"""
+_SEEK = """(t) => new Promise((done) => { page.replay.seek(t);
+    requestAnimationFrame(() => requestAnimationFrame(() => { page.figures(); done(); })); })"""
+
+
+def check_film(file: Path) -> None:
+    """Check that a film can be made, before records are read.
+
+    Raises:
+        UserError: a package or a browser is missing, or the file cannot be written.
+    """
+    require(PLAYWRIGHT)
+    require(PYAV)
+    _browser()
+    if file.suffix != ".mp4":
+        raise UserError(f"--film {file}: a film is an MP4 file; name it {file.with_suffix('.mp4')}")
+    if not file.resolve().parent.is_dir():
+        raise UserError(f"--film {file}: there is no folder {file.parent}; make it, or name another")
+
+
+def write_film(address: str, file: Path, from_s: float, until_s: float) -> None:
+    """Write the film of the page at an address, ten pictures for each simulated second.
+
+    Args:
+        address: of the page with the record.
+        file: MP4 file with H.264.
+        from_s: simulated time of the first picture.
+        until_s: simulated time of the last picture.
+
+    Raises:
+        UserError: the times contradict each other, or the page does not show the record.
+    """
+    if not 0.0 <= from_s < until_s:
+        raise UserError(f"the film would begin at {from_s:g} s and end at {until_s:g} s; name an earlier --film-from")
+    times_s = np.arange(from_s, until_s + 1e-6, 1.0 / PICTURES_PER_S)
+    pictures = _pictures(address, times_s.tolist())
+    often_s = 0.1 if sys.stderr.isatty() else 10.0
+    _encode(file, tqdm(pictures, total=len(times_s), unit=" pictures", desc="filming", mininterval=often_s))
+
+
+def _pictures(address: str, times_s: list[float]) -> Iterator[bytes]:
+    """Yield the page at each moment as a JPEG file."""
+    from playwright.sync_api import Error, sync_playwright  # noqa: PLC0415 - an extra
+
+    width, height = SIZE_PX
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=_browser(), args=list(SWITCHES))
+        try:
+            page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True)
+            page.goto(f"{address}?view=chase&film")
+            page.wait_for_function(_IS_READY, timeout=_SCENE_MS)
+            for t_s in times_s:
+                page.evaluate(_SEEK, t_s)
+                yield page.screenshot(type="jpeg", quality=92)
+        except Error as error:
+            raise UserError(f"the browser could not show the run: {error.message.splitlines()[0]}") from error
+        finally:
+            browser.close()
+
+
+def _encode(file: Path, pictures: Iterable[bytes]) -> None:
+    import av  # noqa: PLC0415 - an extra
+
+    with av.open(str(file), "w") as film:
+        stream: Any = film.add_stream("libx264", rate=Fraction(PICTURES_PER_S))
+        stream.width, stream.height, stream.pix_fmt = *SIZE_PX, "yuv420p"
+        for number, picture in enumerate(pictures):
+            with av.open(io.BytesIO(picture), format="mjpeg") as still:
+                frame = next(still.decode(video=0)).reformat(format="yuv420p")
+            frame.pts, frame.time_base = number, Fraction(1, PICTURES_PER_S)
+            film.mux(stream.encode(frame))
+        film.mux(stream.encode(None))
+
+
+def _browser() -> str:
+    """Return the path of a Chromium.
+
+    Raises:
+        UserError: there is none.
+    """
+    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if found is None:
+        raise UserError(f"--film needs a browser, and none of {', '.join(BROWSERS)} is installed; install Chromium")
+    return found
