@@ -47,7 +47,7 @@ def test_an_object_keeps_what_a_later_layer_does_not_name() -> None:
             {"vehicles": 1, "traffic_density": 2.0},
             "c.json: options.vehicles and c.json: options.traffic_density exclude",
         ),
-        ({"resume": True}, "c.json: --resume continues a series"),
+        ({"hud_screenshot": "a.png"}, "c.json: --hud-screenshot takes a picture of the window; add --hud"),
     ],
 )
 def test_a_complaint_about_a_file_names_path_and_key(values: dict[str, Any], sentence: str) -> None:
