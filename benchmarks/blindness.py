@@ -23,7 +23,7 @@ from typing import Any
 from basu.cli import main
 from basu.records.partners import Partner
 from basu.scenarios.cases import open_library
-from basu.scenarios.characteristics import Characteristics, Control, characteristics_of
+from basu.scenarios.characteristics import Characteristics, TrafficControl, characteristics_of
 from basu.scenarios.playable import Playable
 
 SIGHTED = "sighted"
@@ -44,7 +44,7 @@ def first_cases(words: list[str]) -> list[Playable]:
 
 def must_fail(found: Characteristics, kind: Partner) -> bool:
     """Whether a driver blind to that kind must not pass a case of these characteristics."""
-    return kind is found.partner or (kind is Partner.SIGN and found.control is Control.STOP_SIGN)
+    return kind is found.partner or (kind is Partner.SIGN and found.control is TrafficControl.STOP_SIGN)
 
 
 def play(jobs: dict[str, list[str]], workers: str | None) -> dict[tuple[str, str], dict[str, Any]]:

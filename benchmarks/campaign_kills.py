@@ -29,7 +29,7 @@ from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.player import DriveDone, PlayerSettings
-from basu.jobs.job import Play, Played, PlayerSpec, versions
+from basu.jobs.job import JobOutcome, Play, PlayerSpec, versions
 
 CAMPAIGN = """
 name = "kills"
@@ -56,14 +56,14 @@ def computed(_settings: PlayerSettings) -> PlayerSpec:
 def open_computed() -> Iterator[Play]:
     """A player whose rows follow from the jobs alone."""
 
-    def play(job: dict[str, Any]) -> Played:
+    def play(job: dict[str, Any]) -> JobOutcome:
         share = int(job["id"][:8], 16) / 16**8
         time.sleep(2.0 * DRIVE_S * share)
         verdict = {"status": "ScenarioEnded", "fault": "none", "judged": True, "success": share > 0.1}
         costs = {"wall_s": time.perf_counter(), "cpu_s": 1.0, "memory_mb": 1.0, "host": "here", "worker": os.getpid()}
         program = {f"version_{name}": text for name, text in versions().items()}
         row = {**verdict, **costs, **program, "message": "computed", "severity": share, "simulated_s": 20.0}
-        return Played(DriveDone(row, None))
+        return JobOutcome(DriveDone(row, None))
 
     yield play
 

@@ -21,7 +21,7 @@ from basu.campaigns.drive_table import DriveTable
 from basu.campaigns.plan import CampaignPlan
 from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import checked
-from basu.jobs.job import Done, Job, Play, Played, PlayerSpec
+from basu.jobs.job import Done, Job, JobOutcome, Play, PlayerSpec
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
 
@@ -33,10 +33,10 @@ def open_nothing() -> Iterator[Play]:
     """A player that answers at once, with a row of the usual size."""
     values = {name: 1.0 / (1 + n) for n, name in enumerate(_columns()[:VALUES])}
 
-    def play(job: dict[str, object]) -> Played:
+    def play(job: dict[str, object]) -> JobOutcome:
         share = int(str(job["id"])[:8], 16) / 16**8
         verdict = {"status": "ScenarioEnded", "fault": "none", "judged": True, "success": share > 0.1}
-        return Played({**values, **verdict, "message": "computed", "severity": share, "simulated_s": 20.0})
+        return JobOutcome({**values, **verdict, "message": "computed", "severity": share, "simulated_s": 20.0})
 
     yield play
 

@@ -19,7 +19,7 @@ from types import SimpleNamespace
 import carla
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from basu.agents.sight import Kind, Other, Sight
+from basu.agents.sight import ActorKind, Other, Sight
 from basu.agents.sight.occlusion import static_boxes
 from servers import running_server
 
@@ -39,7 +39,7 @@ def others_around(waypoints: list[carla.Waypoint], at: carla.Location, count: in
     found = []
     for number, pose in enumerate(chance.choices(near, k=count)):
         walks = number % 4 == 0
-        kind, half = (Kind.WALKER, (0.19, 0.19, 0.93)) if walks else (Kind.VEHICLE, (2.3, 0.95, 0.75))
+        kind, half = (ActorKind.WALKER, (0.19, 0.19, 0.93)) if walks else (ActorKind.VEHICLE, (2.3, 0.95, 0.75))
         aside_m = 5.0 if walks else 0.0
         yaw_rad = math.radians(pose.rotation.yaw)
         x_m, y_m = pose.location.x - aside_m * math.sin(yaw_rad), pose.location.y + aside_m * math.cos(yaw_rad)

@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from basu.campaigns.settings import Estimate
+from basu.campaigns.settings import EstimateSettings
 from rare_regions import REGIONS
 
 
@@ -25,7 +25,7 @@ def main() -> None:
     parser.add_argument("--drives", type=int, default=500)
     parser.add_argument("--learn", type=int, default=400)
     given = parser.parse_args()
-    settings = Estimate(drives=given.drives, learn=given.learn, batch=min(100, given.drives))
+    settings = EstimateSettings(drives=given.drives, learn=given.learn, batch=min(100, given.drives))
     print(
         f"{'region':<32} {'truth':>8} {'covers':>7} {'warns':>6} {'misses, no warning':>18} {'value':>6} {'error':>6}"
     )

@@ -26,7 +26,7 @@ from linden.scenery.map_mesh_cache import standing_of
 from linden.sensors.casting.caster import Rays
 from linden.sensors.casting.embree import EmbreeCaster, arguments
 from linden.sensors.casting.embreex_caster import EmbreexCaster
-from linden.sensors.casting.packets import Packet, intersect, new_packet, occlude, put_rays
+from linden.sensors.casting.packets import RayPacket, intersect, new_packet, occlude, put_rays
 from linden.sensors.casting.thread_pool import in_stretches, processors
 from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
 from linden.sensors.runtime.looking_sensors import SensorFrame
@@ -64,7 +64,7 @@ def send(
 ) -> None:
     for row in range(start, stop):
         at = packets[row].ctypes.data
-        packet = Packet(packets[row], ints[row], ints[row], at, at + (COLUMNS - 1) * width * 4)
+        packet = RayPacket(packets[row], ints[row], ints[row], at, at + (COLUMNS - 1) * width * 4)
         if shadow:
             occlude(packet, width, scene, flags)
         else:

@@ -20,7 +20,7 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Transform
 from linden.replay.file.read import Recording
 from linden.replay.file.track import track_of
-from linden.replay.replayer import Plan
+from linden.replay.replayer import ReplayPlan
 from linden.world import World
 
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
@@ -58,7 +58,7 @@ def row(maps: MapLibrary, count: int, frames: int, folder: Path) -> tuple[float,
         simulation.recorder.stop()
         sizes.append((path.stat().st_size - begin) / frames)
     simulation.replayer.start(
-        simulation, track_of(Recording(path)), Plan(0.0, 0.0, 0, Transform(), replay_sensors=False)
+        simulation, track_of(Recording(path)), ReplayPlan(0.0, 0.0, 0, Transform(), replay_sensors=False)
     )
     found.append(cpu_ms(tick, frames))
     return (*found, *sizes)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
 from basu_ros.topics import Topic, moment_messages, vehicle_topics
 
@@ -64,18 +64,18 @@ def main() -> None:
     for name, measured in things().items():
         vehicle = Vehicle("hero", [mount for mount, _ in measured])
         moment = Moment(1.0, 20, Motion(*([0.0] * 15)), Control(), measured=measured)
-        node, other = Node("basu"), Node("listener")
+        node, other = Ros2Node("basu"), Ros2Node("listener")
         topics: list[Topic] = vehicle_topics(vehicle)
         other.listen(*topics)
         node.announce(*topics)
         for topic in topics:
             node.wait_for_readers(topic, 30.0)
 
-        def made(moment: Moment = moment, vehicle: Vehicle = vehicle, node: Node = node) -> None:
+        def made(moment: Moment = moment, vehicle: Vehicle = vehicle, node: Ros2Node = node) -> None:
             for _, content in moment_messages(node.types, vehicle, moment):
                 node.types.data(content)
 
-        def published(moment: Moment = moment, vehicle: Vehicle = vehicle, node: Node = node) -> None:
+        def published(moment: Moment = moment, vehicle: Vehicle = vehicle, node: Ros2Node = node) -> None:
             node.publish(*moment_messages(node.types, vehicle, moment))
 
         print(f"{name:<24} {median_ms(rounds, made):>12.2f} {median_ms(rounds, published):>12.2f}")

@@ -16,7 +16,7 @@ from statistics import median
 
 import numpy as np
 
-from linden.blueprints.library import Kind, packaged
+from linden.blueprints.library import BlueprintKind, packaged
 from linden.errors import Refusal
 from linden.maps.cache import MapCache
 from linden.maps.library import MapLibrary
@@ -49,9 +49,12 @@ def main() -> None:
 def populate(world: World, vehicles: int, walkers: int) -> None:
     """Put vehicles on spawn points and walkers beside them; the seed is fixed."""
     draw = np.random.default_rng(3)
-    of_kind = {kind: [each for each in packaged() if each.kind is kind] for kind in (Kind.VEHICLE, Kind.WALKER)}
+    of_kind = {
+        kind: [each for each in packaged() if each.kind is kind]
+        for kind in (BlueprintKind.VEHICLE, BlueprintKind.WALKER)
+    }
     points = [world.spawn_points[row] for row in draw.permutation(len(world.spawn_points))]
-    for kind, wanted, aside_m in ((Kind.VEHICLE, vehicles, 0.0), (Kind.WALKER, walkers, 6.0)):
+    for kind, wanted, aside_m in ((BlueprintKind.VEHICLE, vehicles, 0.0), (BlueprintKind.WALKER, walkers, 6.0)):
         placed = 0
         for point in points:
             blueprint = of_kind[kind][int(draw.integers(len(of_kind[kind])))]
@@ -86,7 +89,7 @@ def ticks(world: World) -> None:
         time.sleep(0.002)
     link.close()
     kinds = [record.kind for record in world.episode.actors]
-    print(f"{kinds.count(Kind.VEHICLE)} vehicles, {kinds.count(Kind.WALKER)} walkers")
+    print(f"{kinds.count(BlueprintKind.VEHICLE)} vehicles, {kinds.count(BlueprintKind.WALKER)} walkers")
     print(f"step of the world      {1e3 * median(step_s):.3f} ms (median of {TICKS})")
     print(
         f"watched: more          {1e3 * median(watched_s):.3f} ms (90th percentile {1e3 * quantile(watched_s):.3f} ms)"

@@ -61,7 +61,7 @@ def command(types, kind, seen, path):
 
 def main(kind="carla"):
     is_first = kind == "ros1" or kind.startswith("autoware-ai")
-    node = ros1.Node("follower") if is_first else dds.Node("follower")
+    node = ros1.Ros1Node("follower") if is_first else dds.Ros2Node("follower")
     seen, told = odometry_of("hero"), control_of("hero")
     if kind in {"ackermann", "ros1"}:
         told = ackermann_of("hero")

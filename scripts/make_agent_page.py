@@ -17,7 +17,7 @@ import griffe
 
 from basu.agents.autonomous_agent import AgentConfig, AutonomousAgent
 from basu.agents.sight import Other
-from basu.routing import Control, Route, Stop
+from basu.routing import Route, RouteControl, Stop
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "agent-api.md"
 CALLED_BY_BASU = ("config", "sensors", "get_initial_route_locations", "setup", "run_step", "destroy")
@@ -181,7 +181,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "services": methods(FOR_THE_AGENT),
     "config": config_keys,
     "route": fields(Route),
-    "control": fields(Control),
+    "control": fields(RouteControl),
     "stop": fields(Stop),
     "other": fields(Other),
 }

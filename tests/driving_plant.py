@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.agents.builtin.driving.controllers import DriveModel
-from basu.agents.builtin.driving.driver import BehavioralDriver, Command, Driver
+from basu.agents.builtin.driving.driver import BehavioralDriver, Driver, DrivingCommand
 from basu.agents.builtin.driving.manner import NORMAL, Manner
 from basu.agents.builtin.driving.task import make_task
 from basu.agents.builtin.passing.road import make_road
 from basu.agents.builtin.rules.stopping_lines import Light
-from basu.agents.builtin.scene import Body, Ego, Kind, Other
-from basu.routing import Control, ControlKind, Route, Stop
+from basu.agents.builtin.scene import ActorKind, DrivenVehicle, Other, VehicleGeometry
+from basu.routing import ControlKind, Route, RouteControl, Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 DT_S = 0.05
-SHUTTLE_BODY = Body(wheelbase_m=2.8, rear_axle_m=1.4, front_m=2.01, rear_m=2.01, half_width_m=1.0)
+SHUTTLE_BODY = VehicleGeometry(wheelbase_m=2.8, rear_axle_m=1.4, front_m=2.01, rear_m=2.01, half_width_m=1.0)
 SHUTTLE_MODEL = DriveModel(tuple(float(v) for v in range(0, 21, 2)), (1.7,) * 3 + (1.2,) * 2 + (0.8,) * 6, 6.0)
 SHUTTLE_TOP_MPS = 6.7
 
@@ -57,10 +57,10 @@ class Plant:
     def __init__(self, x_m: float, y_m: float, yaw_rad: float, speed_mps: float = 0.0) -> None:
         self.time_s, self.x_m, self.y_m, self.yaw_rad, self.speed_mps = 0.0, x_m, y_m, yaw_rad, speed_mps
 
-    def ego(self) -> Ego:
-        return Ego(self.time_s, self.x_m, self.y_m, self.yaw_rad, self.speed_mps)
+    def ego(self) -> DrivenVehicle:
+        return DrivenVehicle(self.time_s, self.x_m, self.y_m, self.yaw_rad, self.speed_mps)
 
-    def step(self, command: Command) -> None:
+    def step(self, command: DrivingCommand) -> None:
         v = self.speed_mps
         pull = 0.85 * command.throttle * SHUTTLE_MODEL.throttle_mps2(v)
         resist = 1.2 * command.brake * 6.0 + (0.08 + 0.002 * v * v if v > 0.0 or pull > 0.08 else pull)
@@ -120,7 +120,7 @@ def make_route(
         lane_id=np.full(count, -1, dtype=np.int64),
         stops=tuple(Stop(id=str(n), name=f"S{n}", s_m=at_m, **place) for n, at_m in enumerate(stops_at_s_m)),
         controls=tuple(
-            Control(kind=kind, landmark_id=str(n), s_m=at_m, **place) for n, (kind, at_m) in enumerate(controls)
+            RouteControl(kind=kind, landmark_id=str(n), s_m=at_m, **place) for n, (kind, at_m) in enumerate(controls)
         ),
     )
 
@@ -170,7 +170,7 @@ def drive(
 
 
 def body_at(
-    kind: Kind,
+    kind: ActorKind,
     x_m: float,
     y_m: float,
     *,
@@ -179,5 +179,9 @@ def body_at(
     number: int = 7,
 ) -> Other:
     """Somebody of the usual size."""
-    half_length_m, half_width_m = {Kind.VEHICLE: (2.2, 0.95), Kind.WALKER: (0.2, 0.2), Kind.PROP: (0.4, 0.4)}[kind]
+    half_length_m, half_width_m = {
+        ActorKind.VEHICLE: (2.2, 0.95),
+        ActorKind.WALKER: (0.2, 0.2),
+        ActorKind.PROP: (0.4, 0.4),
+    }[kind]
     return Other(number, kind, x_m, y_m, math.radians(yaw_deg), *velocity_mps, 0.0, half_length_m, half_width_m)

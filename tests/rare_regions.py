@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 from scipy.stats import ncx2
 
-from basu.campaigns.settings import Estimate
+from basu.campaigns.settings import EstimateSettings
 from basu_search.proposal import guards_in, weights_of
 from basu_search.rare_event import CrossEntropy, RareEvent, estimate
 from basu_search.rounds import Known, Round
@@ -38,7 +38,7 @@ class Region(NamedTuple):
         severity = np.where(failed, 1.0, 0.99 / (1.0 + np.maximum(self.felt(normal), 0.0)))
         return Known(points, failed.astype(np.float64), severity, np.zeros(len(points), dtype=np.bool_))
 
-    def estimated(self, settings: Estimate, seed: int) -> RareEvent:
+    def estimated(self, settings: EstimateSettings, seed: int) -> RareEvent:
         """Return the estimate that a campaign would make of it."""
         proposer, rounds = CrossEntropy(settings, self.dimensions, seed), list[Round]()
         for number in range(len(proposer.sizes)):

@@ -33,7 +33,7 @@ import numpy as np
 from basu.records.motion import motion_of
 from basu_ros.agents.vehicle_source import control_of, info_message
 from basu_ros.moment import Actor, Light, Measurement, Moment, Motion, Mount, Vehicle
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import (
     LIGHTS,
     Message,
@@ -115,7 +115,7 @@ def compare(stack: ExitStack, sources: Path, site: Path, ticks: int, with_camera
     for point in world.get_map().get_spawn_points()[:40:10]:
         world.try_spawn_actor(world.get_blueprint_library().find("vehicle.audi.tt"), point)
     world.wait_for_tick()
-    listener = Node("comparison")
+    listener = Ros1Node("comparison")
     stack.callback(listener.close)
     theirs = topics_of(specs)
     listener.listen(*theirs)
@@ -206,7 +206,7 @@ def published(
     moments: list[Moment], described: Vehicle, vehicle: carla.Vehicle
 ) -> tuple[dict[str, dict[int, Any]], float, float]:
     """Publish our messages of the moments with a subscriber; the messages by time, and processor ms a tick."""
-    node, other = Node("ours"), Node("ours_listener")
+    node, other = Ros1Node("ours"), Ros1Node("ours_listener")
     mine = [topic._replace(name=f"/ours{topic.name}") for topic in vehicle_topics(described)]
     node.announce(*mine)
     other.listen(*mine)

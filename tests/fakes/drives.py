@@ -7,7 +7,7 @@ import numpy as np
 
 from basu.records.history import FRAME, Collision, Facts, History, LaneInvasion, Recorder, Vehicle
 from basu.records.history.model import NO_LIGHT
-from basu.routing import Control, ControlKind, Route, Stop
+from basu.routing import ControlKind, Route, RouteControl, Stop
 
 STEP_S = 0.05
 DRIVING = 2  # carla.LaneType
@@ -17,7 +17,7 @@ VEHICLE = Vehicle(type_id="vehicle.easymile.ez10", front_m=2.0, rear_m=2.0, widt
 def straight_route(
     length_m: float = 200.0,
     limit_mps: float = 11.0,
-    controls: tuple[Control, ...] = (),
+    controls: tuple[RouteControl, ...] = (),
     stops: tuple[Stop, ...] = (),
 ) -> Route:
     """A point a metre, from the origin to the east."""
@@ -39,12 +39,14 @@ def straight_route(
     )
 
 
-def stop_sign(s_m: float, landmark_id: str = "7") -> Control:
+def stop_sign(s_m: float, landmark_id: str = "7") -> RouteControl:
     """A stop sign whose line lies across the straight road."""
-    return Control(kind=ControlKind.STOP_SIGN, landmark_id=landmark_id, s_m=s_m, x_m=s_m, y_m=0.0, z_m=0.0, yaw_rad=0.0)
+    return RouteControl(
+        kind=ControlKind.STOP_SIGN, landmark_id=landmark_id, s_m=s_m, x_m=s_m, y_m=0.0, z_m=0.0, yaw_rad=0.0
+    )
 
 
-def traffic_light(s_m: float, landmark_id: str = "12") -> Control:
+def traffic_light(s_m: float, landmark_id: str = "12") -> RouteControl:
     """A traffic light whose line lies across the straight road."""
     return replace(stop_sign(s_m, landmark_id), kind=ControlKind.TRAFFIC_LIGHT)
 

@@ -14,7 +14,7 @@ from basu.metrics.infraction import CollisionKind
 from basu.metrics.lanes import within_one_lane
 from basu.records.history import History
 from basu.records.history.model import NO_LIGHT
-from basu.routing import Control, Route
+from basu.routing import Route, RouteControl
 from fakes.drives import STEP_S, hit, stop_sign, straight_route, traffic_light
 from fakes.rides import Row, moving, ride
 
@@ -152,7 +152,7 @@ def out_of_bay(t_s: float) -> tuple[float, float]:
     return 20.0 + x_m, 3.0 * (1.0 - share * share * (3.0 - 2.0 * share))
 
 
-def crossing(*controls: Control) -> Route:
+def crossing(*controls: RouteControl) -> Route:
     """A straight route over a junction."""
     route = straight_route(120.0, controls=controls)
     return replace(route, is_junction=np.abs(route.s_m - CROSSING_M) <= HALF_JUNCTION_M)

@@ -29,7 +29,7 @@ from linden.sensors.camera.gpu.renderer import GpuRenderer  # noqa: E402 - likew
 from linden.sensors.camera.renderer import CpuRenderer  # noqa: E402 - likewise
 from linden.sensors.camera.spec import CameraSpec, Film, Picture  # noqa: E402 - likewise
 from linden.sensors.casting.gpu_memory import SharedBuffer  # noqa: E402 - once there is something that is called warp
-from linden.sensors.view import Look  # noqa: E402 - likewise
+from linden.sensors.view import SensorLook  # noqa: E402 - likewise
 
 SPEC = CameraSpec(12, 8)
 PICTURES = [
@@ -103,7 +103,7 @@ def main() -> None:
     caster.pose(seen.instances)
     here, there = CpuRenderer(), GpuRenderer(caster)
     for expected in (False, False, True):  # as it stands, captured, and begun before it is asked for
-        given = [Look(s, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for s in (seen, seen._replace(caster=caster))]
+        given = [SensorLook(s, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for s in (seen, seen._replace(caster=caster))]
         for picture in PICTURES if expected else ():
             there.expect(picture, given[1])
         for picture in PICTURES:

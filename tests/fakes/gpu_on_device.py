@@ -12,7 +12,7 @@ from linden.sensors.camera.renderer import CpuRenderer
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
 from linden.sensors.casting.caster import CPU, Hits, Rays
 from linden.sensors.casting.warp_caster import WarpCaster
-from linden.sensors.view import Look
+from linden.sensors.view import SensorLook
 
 SPEC = CameraSpec(160, 122)
 EYE, BEFORE = Transform(Vector3D(0.0, 0.0, 2.0), Rotation()), Transform(Vector3D(-0.1, 0.0, 2.0), Rotation())
@@ -45,7 +45,7 @@ def apart() -> dict[str, np.ndarray] | None:
     here, there, found = CpuRenderer(), GpuRenderer(seen.caster), {}
     given = seen._replace(caster=Answers(seen.caster)), seen
     for _ in range(3):  # as it stands, captured, and replayed
-        looks = [Look(moment, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for moment in given]
+        looks = [SensorLook(moment, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for moment in given]
         for kind in ("depth", "semantic", "instance", "normals", "flow", "coloured"):
             picture = Picture(kind, SPEC, Film() if kind == "coloured" else None)
             one, other = here.make(picture, looks[0]), there.make(picture, looks[1])

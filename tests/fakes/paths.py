@@ -7,7 +7,7 @@ import numpy as np
 
 from basu.records.history import FRAME, Facts, History, Recorder
 from basu.records.history.model import NO_LIGHT
-from basu.routing import Control, Route, Stop
+from basu.routing import Route, RouteControl, Stop
 from basu.routing.planned_route import Progress, advance
 from fakes.drives import DRIVING, STEP_S, VEHICLE
 
@@ -15,7 +15,7 @@ LANE_M = 3.5
 Points = Sequence[tuple[float, float]]
 
 
-def route_along(corners: Points, controls: tuple[Control, ...] = (), stops: tuple[Stop, ...] = ()) -> Route:
+def route_along(corners: Points, controls: tuple[RouteControl, ...] = (), stops: tuple[Stop, ...] = ()) -> Route:
     """A route a point a metre through corners, in the right-hand lane of a street with two lanes."""
     x_m, y_m, s_m = resampled(corners, 1.0)
     yaw_rad = np.arctan2(np.gradient(y_m), np.gradient(x_m))

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from basu.outcome import Outcome, Status
 from basu.records.history import Collision, History
-from basu.scenarios.criteria import Judgement, Played, Thing
+from basu.scenarios.criteria import Judgement, Played, StandingThing
 
 ARRIVED = Outcome(Status.COMPLETED, "arrived")
 
@@ -15,7 +15,7 @@ def played(
     *,
     outcome: Outcome = ARRIVED,
     roles: Mapping[int, str] | None = None,
-    things: tuple[Thing, ...] = (),
+    things: tuple[StandingThing, ...] = (),
     phases_s: Mapping[str, float] | None = None,
     timeout_s: float = 60.0,
     collisions: tuple[Collision, ...] = (),

@@ -20,7 +20,7 @@ def seldom(last: int, *, localises: bool) -> None:
 
     One that ``localises`` has no pose before its first command, and ends where it gets another's.
     """
-    node = ros1.Node("stack")
+    node = ros1.Ros1Node("stack")
     types, due_s, given = node.types, UNLOCALISED_S if localises else 0.0, 0
     node.listen(CLOCK, autoware_ai.CURRENT_POSE)
     if localises:
@@ -44,7 +44,7 @@ def seldom(last: int, *, localises: bool) -> None:
 
 
 def main(kind: str, generation: str = "ros2") -> None:
-    node = ros1.Node("stack") if generation == "ros1" else dds.Node("stack")
+    node = ros1.Ros1Node("stack") if generation == "ros1" else dds.Ros2Node("stack")
     seen, told = odometry_of("hero"), control_of("hero")
     node.listen(seen)
     node.announce(told)

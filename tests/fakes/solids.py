@@ -9,7 +9,7 @@ from linden.protocol.values.space import Transform
 from linden.scenery.mesh import NO_OBJECT, Material, Mesh, faces
 from linden.sensors.casting.caster import Instances
 from linden.sensors.casting.choose import caster_of
-from linden.sensors.view import Look, Seen, table_of
+from linden.sensors.view import Seen, SensorLook, table_of
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
 _SIDES = [
@@ -72,10 +72,10 @@ def seen_of(standing: Mesh, bodies: list[Mesh], moving: Instances, *, object_id:
     )
 
 
-def look_at(seen: Seen, pose: Transform, *, number: int = 0, interval_s: float = 0.1, **known) -> Look:
+def look_at(seen: Seen, pose: Transform, *, number: int = 0, interval_s: float = 0.1, **known) -> SensorLook:
     """One frame of a sensor at a pose, at rest and on its own unless told otherwise."""
     known = {"velocity_mps": np.zeros(3), "carrier_id": 0, **known}
-    return Look(seen, {}, pose, pose, number=number, interval_s=interval_s, **known)
+    return SensorLook(seen, {}, pose, pose, number=number, interval_s=interval_s, **known)
 
 
 def described(blueprint_id: str, **chosen: object) -> ActorDescription:

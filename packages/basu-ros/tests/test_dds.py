@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 from basu_ros.dds_domain import domain_of_environment, is_local
 from basu_ros.dds_types import dds_name, dds_type
 from basu_ros.topics import (
@@ -31,16 +31,16 @@ PEER = Path(__file__).parents[3] / "tests" / "fakes" / "plain_dds_peer.py"
 
 
 @pytest.fixture
-def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros2Node]:
     """A node on a domain of this process's own, on this machine alone."""
     monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
     monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + os.getpid() % 200))
-    made = Node("basu")
+    made = Ros2Node("basu")
     yield made
     made.close()
 
 
-def test_a_plain_peer_hears_us_and_its_command_reaches_us(node: Node) -> None:
+def test_a_plain_peer_hears_us_and_its_command_reaches_us(node: Ros2Node) -> None:
     node.listen(control_of("hero"))
     node.announce(*vehicle_topics(VEHICLE))
     node.publish(*first_messages(node.types, VEHICLE, 0.0))  # before the peer is there: it gets them all the same
@@ -70,9 +70,9 @@ def test_a_plain_peer_hears_us_and_its_command_reaches_us(node: Node) -> None:
     assert (told.throttle, told.steer, told.gear, told.reverse, told.header.stamp.sec) == (0.5, -0.25, 2, True, 3)
 
 
-def test_two_nodes_of_a_process_talk_and_a_latched_message_waits(node: Node) -> None:
+def test_two_nodes_of_a_process_talk_and_a_latched_message_waits(node: Ros2Node) -> None:
     node.publish(*first_messages(node.types, VEHICLE, 0.0))
-    other = Node("listener")
+    other = Ros2Node("listener")
     other.listen(TF_STATIC)
     assert other.wait(TF_STATIC, 30.0)
     [tree] = other.received(TF_STATIC)
@@ -81,16 +81,16 @@ def test_two_nodes_of_a_process_talk_and_a_latched_message_waits(node: Node) -> 
     other.close()
 
 
-def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Node) -> None:
+def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Ros2Node) -> None:
     """An older definition of the same name: DDS compares the members and does not join the two."""
     topic = Topic("/drive", "ackermann_msgs/msg/AckermannDrive")
     node.listen(topic)
-    other = Node("talker")
+    other = Ros2Node("talker")
     older = Types(Generation.ROS_2)
     older.store.fielddefs["ackermann_msgs/msg/AckermannDrive"][1].pop()
     other.types = older
     other.announce(topic)
-    joined = Node("good")
+    joined = Ros2Node("good")
     joined.announce(topic)
     assert joined.wait_for_readers(topic, 30.0)
     assert (other.readers_of(topic), node.writers_of(topic)) == (0, 1)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from basu_ros import autoware
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount, Vehicle
 from basu_ros.output.record_bag import event_topics
 from basu_ros.sensor_messages import SEMANTIC_ROW
@@ -70,7 +70,7 @@ def _here(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + (os.getpid() + 7 * next(DOMAINS)) % 90))
 
 
-def heard_by(peer: "subprocess.Popen[str]", node: Node, messages: list[Message]) -> dict[str, dict[str, object]]:
+def heard_by(peer: "subprocess.Popen[str]", node: Ros2Node, messages: list[Message]) -> dict[str, dict[str, object]]:
     """What a node of rclpy hears of messages, by topic. Those of volatile topics are repeated until it has all."""
     topics = [message.topic for message in messages]
     assert peer.stdin is not None
@@ -88,7 +88,7 @@ def heard_by(peer: "subprocess.Popen[str]", node: Node, messages: list[Message])
     return {each["topic"]: each for each in json.loads(told.result() or "[]")}
 
 
-def agrees(heard: dict[str, dict[str, object]], node: Node, messages: list[Message]) -> None:
+def agrees(heard: dict[str, dict[str, object]], node: Ros2Node, messages: list[Message]) -> None:
     """Check what was heard against what was published."""
     assert sorted(heard) == sorted(message.topic.name for message in messages)
     for topic, content in messages:
@@ -107,7 +107,7 @@ def agrees(heard: dict[str, dict[str, object]], node: Node, messages: list[Messa
 
 def test_every_topic_of_the_bridge_arrives_in_rclpy(rclpy_peer: Starts) -> None:
     """Messages that wait for a late reader are published before it is there."""
-    node = Node("basu")
+    node = Ros2Node("basu")
     blank = [info_of("hero"), *event_topics("hero")]
     messages = [
         *first_messages(node.types, VEHICLE, 0.0),
@@ -126,7 +126,7 @@ def test_every_topic_of_the_bridge_arrives_in_rclpy(rclpy_peer: Starts) -> None:
 
 
 def test_every_topic_of_autoware_arrives_in_rclpy(rclpy_peer: Starts) -> None:
-    node = Node("basu")
+    node = Ros2Node("basu")
     by_topic = {
         message.topic: message
         for message in [
@@ -146,7 +146,7 @@ def test_every_topic_of_autoware_arrives_in_rclpy(rclpy_peer: Starts) -> None:
 def test_two_domains_do_not_mix(rclpy_peer: Starts) -> None:
     """The same topic on two domains: each listener hears its own."""
     own = int(os.environ["ROS_DOMAIN_ID"])
-    nodes = {domain: Node("basu", domain) for domain in (own, own + 1)}
+    nodes = {domain: Ros2Node("basu", domain) for domain in (own, own + 1)}
     messages = {
         domain: [Message(STATUS, node.types.message(STATUS.type, frame=domain))] for domain, node in nodes.items()
     }
@@ -161,7 +161,7 @@ def test_two_domains_do_not_mix(rclpy_peer: Starts) -> None:
 def test_rclpy_with_another_version_of_a_type_is_no_peer(rclpy_peer: Starts) -> None:
     """Fast DDS is joined by the type's name, so the type's hash decides."""
     topic = ackermann_of("hero")
-    node = Node("basu")
+    node = Ros2Node("basu")
     node.listen(topic)
     rclpy_peer("publish", topic.name, topic.type, messages="other/messages")
     until_s = time.monotonic() + LONGEST_S
@@ -177,7 +177,7 @@ def test_rclpy_with_another_version_of_a_type_is_no_peer(rclpy_peer: Starts) -> 
 
 def test_a_publisher_that_does_not_fit_is_named(rclpy_peer: Starts) -> None:
     topic = Topic("/carla/hero/vehicle_control_cmd", "carla_msgs/msg/CarlaEgoVehicleControl")
-    node = Node("basu")
+    node = Ros2Node("basu")
     node.listen(topic)
     rclpy_peer("drive", "best-effort")
     until_s = time.monotonic() + LONGEST_S

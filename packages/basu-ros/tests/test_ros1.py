@@ -16,7 +16,7 @@ import pytest
 from basu.errors import UserError
 from basu_ros import rospy_start
 from basu_ros.autoware_ai import COMMAND, old_types
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.rospy_start import INSTALL, master_uri
 from basu_ros.topics import (
     TF_STATIC,
@@ -39,14 +39,14 @@ LONG_S = 30.0
 
 
 @pytest.fixture
-def node(master: str) -> Iterator[Node]:
+def node(master: str) -> Iterator[Ros1Node]:
     del master
-    made = Node("basu")
+    made = Ros1Node("basu")
     yield made
     made.close()
 
 
-def test_a_plain_rospy_node_hears_us_and_its_command_reaches_us(node: Node, starts: Starts) -> None:
+def test_a_plain_rospy_node_hears_us_and_its_command_reaches_us(node: Ros1Node, starts: Starts) -> None:
     node.listen(control_of("hero"))
     node.announce(*vehicle_topics(VEHICLE))
     node.publish(*first_messages(node.types, VEHICLE, 0.0))  # before the peer is there: it gets them all the same
@@ -81,9 +81,9 @@ def test_a_plain_rospy_node_hears_us_and_its_command_reaches_us(node: Node, star
     assert (told.throttle, told.steer, told.gear, told.reverse, told.header.stamp.sec) == (0.5, -0.25, 2, True, 3)
 
 
-def test_two_nodes_talk_and_a_latched_message_waits(node: Node) -> None:
+def test_two_nodes_talk_and_a_latched_message_waits(node: Ros1Node) -> None:
     node.publish(*first_messages(node.types, VEHICLE, 0.0))
-    other = Node("listener")
+    other = Ros1Node("listener")
     other.listen(TF_STATIC)
     assert other.wait(TF_STATIC, LONG_S)
     [tree] = other.received(TF_STATIC)
@@ -97,11 +97,11 @@ def test_two_nodes_talk_and_a_latched_message_waits(node: Node) -> None:
         assert node._changed.wait_for(lambda: not node._peers.get(node._numbers[TF_STATIC.name]), LONG_S)
 
 
-def test_commands_of_both_generations_of_autoware_are_read(node: Node) -> None:
+def test_commands_of_both_generations_of_autoware_are_read(node: Ros1Node) -> None:
     node.listen(COMMAND, any_version=True)
     gears = []
     for name, types in (("new", node.types), ("old", old_types())):
-        stack = Node(name)
+        stack = Ros1Node(name)
         gear = {"gear": 2} if name == "old" else {"gear_cmd": types.message("autoware_msgs/msg/Gear", gear=2)}
         stack.publish_as(types, Message(COMMAND._replace(is_latched=True), types.message(COMMAND.type, **gear)))
         assert node.wait(COMMAND, LONG_S)
@@ -111,10 +111,10 @@ def test_commands_of_both_generations_of_autoware_are_read(node: Node) -> None:
     assert gears == [2, 2]
 
 
-def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Node) -> None:
+def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Ros1Node) -> None:
     topic = ackermann_of("hero")
     node.listen(topic)
-    other = Node("talker")
+    other = Ros1Node("talker")
     older = Types(Generation.ROS_1, {topic.type: "float32 speed\n"})
     other.publish_as(older, Message(topic._replace(is_latched=True), older.message(topic.type, speed=1.0)))
     with node._changed:
@@ -124,13 +124,13 @@ def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Node) -> None:
     other.close()
 
 
-def test_a_second_node_of_a_name_is_refused(node: Node) -> None:
+def test_a_second_node_of_a_name_is_refused(node: Ros1Node) -> None:
     del node
     with pytest.raises(UserError, match="has a node /basu already, such as another run's; end that one first"):
-        Node("basu")
+        Ros1Node("basu")
 
 
-def test_a_node_with_a_dead_process_is_a_sentence(node: Node) -> None:
+def test_a_node_with_a_dead_process_is_a_sentence(node: Ros1Node) -> None:
     node.listen(TF_STATIC)
     os.kill(node._process.pid, signal.SIGKILL)
     with pytest.raises(UserError, match="the ROS 1 node /basu ended: its process died"):
@@ -144,7 +144,7 @@ def test_without_a_roscore_there_is_a_sentence(master: str, monkeypatch: pytest.
         nowhere = f"http://localhost:{free.getsockname()[1]}"
     monkeypatch.setenv("ROS_MASTER_URI", nowhere)
     with pytest.raises(UserError, match=rf"no roscore answers at {nowhere} .*; start one with `roscore`"):
-        Node("basu")
+        Ros1Node("basu")
 
 
 def test_without_rospy_there_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +154,7 @@ def test_without_rospy_there_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> N
         has = subprocess.run([sys.executable, "-c", "import rospy"], check=False, capture_output=True).returncode == 0
         assert not has, "this Python is not the system's"
         with pytest.raises(UserError) as told:
-            Node("basu")
+            Ros1Node("basu")
     finally:
         rospy_start._python.cache_clear()
     assert str(told.value) == INSTALL

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from basu.campaigns.settings import Estimate
+from basu.campaigns.settings import EstimateSettings
 from basu_search.proposal import Part, drawn_from, guarded, guards_in, parts_of, weights_of
 from basu_search.rare_event import CrossEntropy, estimate
 from basu_search.rounds import Known, Round
@@ -13,7 +13,7 @@ from rare_regions import REGIONS
 
 HALF_SPACE = REGIONS["one half space"]
 EXACT = HALF_SPACE.exact  # 2.33e-4, for every direction of it
-SETTINGS = Estimate(drives=500, learn=400, batch=100)
+SETTINGS = EstimateSettings(drives=500, learn=400, batch=100)
 NOTHING = Known(np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(0, dtype=np.bool_))
 
 
@@ -73,7 +73,7 @@ def test_an_estimate_without_a_failing_region_stays_open_above() -> None:
 
 
 def test_too_few_drives_are_said_and_enough_are_not() -> None:
-    few = Estimate(drives=60, learn=60, batch=30)
+    few = EstimateSettings(drives=60, learn=60, batch=30)
     regions = [HALF_SPACE, REGIONS["two, equal"]]
     assert all(each.estimated(few, seed).cautions for each in regions for seed in range(10))
     assert not any(each.estimated(SETTINGS, seed).cautions for each in regions for seed in range(10))
@@ -90,7 +90,7 @@ def test_failures_where_none_was_expected_are_said() -> None:
 
 
 def test_a_plain_sample_has_no_failures_out_of_place() -> None:
-    proposer = CrossEntropy(Estimate(drives=2000, batch=2000, plain=1.0), 2, 1)
+    proposer = CrossEntropy(EstimateSettings(drives=2000, batch=2000, plain=1.0), 2, 1)
     made = proposer.propose(0, [], NOTHING)
     assert np.allclose(weights_of(made), 1.0)
     assert not guards_in(made).any()
@@ -111,7 +111,7 @@ def test_weights_are_bounded_and_their_mean_is_one() -> None:
 
 
 def test_proposals_repeat_by_their_seed() -> None:
-    settings = Estimate(drives=20, learn=20, batch=10)
+    settings = EstimateSettings(drives=20, learn=20, batch=10)
     assert repr(HALF_SPACE.estimated(settings, 5)) == repr(HALF_SPACE.estimated(settings, 5))
     one, other = (CrossEntropy(settings, 2, seed).propose(0, [], NOTHING).points for seed in (5, 6))
     assert not np.array_equal(one, other)

@@ -18,7 +18,7 @@ from linden_maps.cli.map_source import world_map_of
 from linden_maps.lanelet2.model import bounds_of
 from linden_maps.lanelet2.osm import osm_bytes, read_osm
 from linden_maps.pointcloud.cloud import Cloud, in_map
-from linden_maps.pointcloud.drive import Lidar, Place, drive
+from linden_maps.pointcloud.drive import Lidar, SensorPlace, drive
 from linden_maps.pointcloud.pcd_writing import PcdWriter
 from vector_map_town import two_roads
 
@@ -113,7 +113,7 @@ def test_lidar_rays_meet_the_kerbs_where_the_lanelet_bounds_are(linden, linden_l
         at = line.mean(axis=0)
         along = (line[1] - line[0])[:2] / np.linalg.norm((line[1] - line[0])[:2])
         inward = np.array([-along[1], along[0]]) * side
-        (scan,) = drive([Place(*(at[:2] + 4.0 * inward), at[2] + 2.4, 0.0)], _TURN, caster, standing)
+        (scan,) = drive([SensorPlace(*(at[:2] + 4.0 * inward), at[2] + 2.4, 0.0)], _TURN, caster, standing)
         cloud = in_map(scan)
         away = cloud.points_m[:, :2] - at[:2]
         aside, ahead = away @ inward, away @ along

@@ -9,9 +9,9 @@ import pytest
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.gltf import glb
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
+from linden.scenery.patches import ALL_SIDES, PatchFrames, PatchLook, boxes
 
-FRAMES = Frames(np.array([[1000.0, -2000.0, 250.0]]), np.array([0.4]))
+FRAMES = PatchFrames(np.array([[1000.0, -2000.0, 250.0]]), np.array([0.4]))
 SIZES = {5126: np.float32, 5125: np.uint32, 5123: np.uint16}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 
@@ -19,8 +19,8 @@ WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 @pytest.fixture
 def mesh() -> Mesh:
     tag = SemanticTag.STATIC
-    red = boxes(FRAMES, (0.0, 0.0, 1.0), (2.0, 1.0, 1.0), Look(Material.BRICK, tag, (255, 0, 0)), ALL_SIDES)
-    grey = boxes(FRAMES, (9.0, 0.0, 1.0), (1.0, 1.0, 1.0), Look(Material.METAL, tag, (188, 188, 188)), ALL_SIDES)
+    red = boxes(FRAMES, (0.0, 0.0, 1.0), (2.0, 1.0, 1.0), PatchLook(Material.BRICK, tag, (255, 0, 0)), ALL_SIDES)
+    grey = boxes(FRAMES, (9.0, 0.0, 1.0), (1.0, 1.0, 1.0), PatchLook(Material.METAL, tag, (188, 188, 188)), ALL_SIDES)
     return join([red, grey])
 
 

@@ -30,7 +30,7 @@ from linden.replay.file.packets import RecordingError
 from linden.replay.file.read import Recording
 from linden.replay.file.reports import blocked, collisions
 from linden.replay.file.track import track_of
-from linden.replay.replayer import Plan
+from linden.replay.replayer import ReplayPlan
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
 from linden.world import World
@@ -170,7 +170,7 @@ def use_recording(path: Path, simulation: World) -> None:
         for report in REPORTS:
             assert report(recording)
     track = track_of(Recording(path))
-    simulation.replayer.start(simulation, track, Plan(0.0, 0.0, 9, Transform(), replay_sensors=True))
+    simulation.replayer.start(simulation, track, ReplayPlan(0.0, 0.0, 9, Transform(), replay_sensors=True))
     for _ in range(4):
         simulation.step(0.05)
     simulation.replayer.stop(keep_actors=False)

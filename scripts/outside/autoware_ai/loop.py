@@ -25,7 +25,7 @@ from stack import running_stack
 
 from basu.records.history.files import read_history
 from basu_ros.autoware_ai import NDT_POSE
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import odometry_of
 from basu_ros.vehicle_messages import NS_PER_S
 
@@ -91,7 +91,7 @@ def main() -> int:
 
 def listened(run: "subprocess.Popen[bytes]", leaf_m: float) -> tuple[dict[int, Any], dict[int, Any]]:
     """The true and the found poses by time, until the run ends; voxel_grid_filter gets its setting before."""
-    node = Node("loop")
+    node = Ros1Node("loop")
     types = ndt_settings.types()
     node.publish_as(types, ndt_settings.voxel(types, leaf_m))
     node.listen(TRUTH, FOUND)

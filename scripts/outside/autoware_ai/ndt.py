@@ -30,7 +30,7 @@ from stack import Stack, running_stack
 from basu.errors import UserError
 from basu_ros import vehicle_messages as of_vehicle
 from basu_ros.autoware_ai import GNSS_POSE, NDT_POSE, POINTS, POSE
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import CLOCK, TF_STATIC, Message, Topic, odometry_of
 from basu_ros.types import Generation, Types
 from basu_ros.vehicle_messages import NS_PER_S
@@ -96,13 +96,13 @@ def main() -> int:
     return 0 if told["p95_cm"] < GOAL_CM else 1
 
 
-def started(stack: Stack, args: argparse.Namespace) -> Node:
+def started(stack: Stack, args: argparse.Namespace) -> Ros1Node:
     """A node beside NDT matching, which has its settings and the cloud."""
     master = ServerProxy(stack.environment["ROS_MASTER_URI"])
     values = {"localizer": "velodyne", "tf_x": 0.0, "tf_y": 0.0, "tf_z": args.height}
     for name, value in {**values, "tf_roll": 0.0, "tf_pitch": 0.0, "tf_yaw": 0.0}.items():
         master.setParam("/ndt", f"/{name}", value)
-    node = Node("ndt")
+    node = Ros1Node("ndt")
     node.listen(NDT_POSE, TIME, MAP_STAT)
     node.announce(POINTS, GNSS_POSE, CLOCK, TF_STATIC)
     stack.node("voxel_grid_filter", "__name:=voxel_grid_filter", "_points_topic:=/points_raw")
@@ -140,7 +140,7 @@ def scans_of(bag: Path, sensor: str, every: int, until_s: float) -> Iterator[Sca
                 del poses[key], waiting[key]
 
 
-def matched(node: Node, scans: Iterator[Scan]) -> Iterator[Match]:
+def matched(node: Ros1Node, scans: Iterator[Scan]) -> Iterator[Match]:
     """What NDT finds of each scan."""
     types = node.types
     for number, scan in enumerate(scans):
@@ -157,7 +157,7 @@ def matched(node: Node, scans: Iterator[Scan]) -> Iterator[Match]:
             print(f"{scan.at_ns / NS_PER_S:.1f} s", file=sys.stderr, flush=True)
 
 
-def found_pose(node: Node, scan: Scan, *, first: bool) -> Any:
+def found_pose(node: Ros1Node, scan: Scan, *, first: bool) -> Any:
     """The pose of a scan; None where it does not come. The first scan is repeated until the cloud is loaded."""
     for _ in range(100 if first else 20):
         node.wait(NDT_POSE, 3.0)

@@ -31,7 +31,7 @@ from basu_ros import vehicle_messages as of_vehicle
 from basu_ros.autoware_ai import GOAL, INITIAL_POSE, still_messages
 from basu_ros.frames import Pose
 from basu_ros.moment import Vehicle
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import Message, Topic
 
 PATHS = Topic("/global_waypoints_rviz", "visualization_msgs/msg/MarkerArray")
@@ -120,7 +120,7 @@ def place_of(waypoint: carla.Waypoint) -> Place:
 def planned(stack: Stack, asian: Path, start: Place, goal: Place) -> list[tuple[float, float]]:
     """The points of the plan in CARLA's axes; empty without one."""
     stack.load_vector_map(asian)
-    node = Node("plan")
+    node = Ros1Node("plan")
     try:
         types = node.types
         node.listen(MAP_STAT, PATHS, any_version=True)

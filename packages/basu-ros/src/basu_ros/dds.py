@@ -47,7 +47,7 @@ BEFORE_IRON = ("foxy", "galactic", "humble")  # an identifier of an endpoint has
 NS_PER_S = 1_000_000_000
 
 
-class Node:
+class Ros2Node:
     """A node of ROS 2 on a domain: it publishes messages of any of our types and keeps what it receives."""
 
     kind, settings = "ROS 2", "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY"

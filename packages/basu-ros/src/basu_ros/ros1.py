@@ -51,7 +51,7 @@ class Peer(NamedTuple):
     definition: str
 
 
-class Node:
+class Ros1Node:
     """A node of ROS 1 at the master of ``ROS_MASTER_URI``."""
 
     kind, settings, missed_s = "ROS 1", "ROS_MASTER_URI", 1.0
@@ -320,7 +320,7 @@ def require_roscore() -> None:
     Raises:
         UserError: it is not, or none does.
     """
-    Node("basu_look").close()
+    Ros1Node("basu_look").close()
 
 
 @cache

@@ -6,7 +6,7 @@ import pytest
 
 from basu.agents.builtin.driving.controllers import DriveModel
 from basu.agents.builtin.perception import Steering, VehicleFacts
-from basu.agents.builtin.scene import Body
+from basu.agents.builtin.scene import VehicleGeometry
 from basu.errors import AgentInvalidControlError
 from basu_ros.agents.commands import (
     AckermannControl,
@@ -20,7 +20,7 @@ from basu_ros.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 FACTS = VehicleFacts(
-    Body(2.8, 1.4, 2.0, 2.0, 1.0),
+    VehicleGeometry(2.8, 1.4, 2.0, 2.0, 1.0),
     DriveModel((0.0, 20.0), (4.0, 4.0), 8.0),
     Steering(math.radians(35.0), (), ()),
     10.0,

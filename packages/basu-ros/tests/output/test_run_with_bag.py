@@ -14,7 +14,7 @@ from basu.cli import main
 from basu.errors import UserError
 from basu.records.history.files import read_history
 from basu_ros.bag_file import BagFile
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 from basu_ros.output.record_bag import write_record
 from basu_ros.topics import TF_STATIC, Message, Topic, odometry_of, path_of
 from basu_ros.types import Generation
@@ -122,7 +122,7 @@ def test_a_run_is_heard_on_ros_2_while_it_lasts(
 ) -> None:
     monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
     monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + os.getpid() % 200))
-    listener = Node("listener")
+    listener = Ros2Node("listener")
     route, clouds = path_of("hero"), Topic("/carla/hero/LIDAR", "sensor_msgs/msg/PointCloud2")
     listener.listen(odometry_of("hero"), TF_STATIC, route, clouds)
     agent = tmp_path / "sensing.py"

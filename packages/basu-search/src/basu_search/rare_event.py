@@ -21,7 +21,7 @@ from basu_search.rounds import Known, Round, round_sizes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.campaigns.settings import Estimate
+    from basu.campaigns.settings import EstimateSettings
     from basu_search.proposal import Mixture
 
 LOOK_AROUND = 0.4  # share of the wide guard while the mixture learns
@@ -36,7 +36,7 @@ STRAY = 0.1  # of an estimate: a larger part from failures outside of the propos
 class CrossEntropy:
     """Proposals of one estimate."""
 
-    def __init__(self, settings: Estimate, dimensions: int, seed: int) -> None:
+    def __init__(self, settings: EstimateSettings, dimensions: int, seed: int) -> None:
         """Take the settings; all chance comes from ``seed``."""
         self._settings, self._dimensions, self._seed = settings, dimensions, seed
         learning = round_sizes(min(settings.batch, settings.learn), settings.learn, settings.batch)

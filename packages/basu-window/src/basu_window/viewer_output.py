@@ -10,7 +10,7 @@ from basu_window.extras import RERUN
 if TYPE_CHECKING:
     from basu.managers.base_manager import BaseManager
     from basu.options.drive import DriveOptions
-    from basu.running.outputs import Drive
+    from basu.running.outputs import ShownDrive
 
 
 def check(_options: DriveOptions) -> None:
@@ -22,7 +22,7 @@ def check(_options: DriveOptions) -> None:
     require(RERUN)
 
 
-def managers(_options: DriveOptions, drive: Drive) -> list[BaseManager]:
+def managers(_options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
     """Return the manager that streams the drive; it prints the viewer's address even in a quiet drive."""
     from basu_window.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
 

@@ -11,10 +11,10 @@ from basu.managers.base_manager import Ego
 from basu_window.browser.pace import Meter
 from basu_window.browser.readings import (
     GRAVITY_MPS2,
+    DriveSetting,
     Fix,
     Inertial,
     Readings,
-    Setting,
     clock,
     compass_point,
     felt,
@@ -116,7 +116,7 @@ def test_rates_are_those_of_the_last_two_seconds() -> None:
 SHOWN = Readings(
     vehicle="vehicle.tesla.model3",
     driver="agent",
-    setting=Setting("Linden", "leap", "ClearSunset", "3 cameras, lidar, GNSS, IMU"),
+    setting=DriveSetting("Linden", "leap", "ClearSunset", "3 cameras, lidar, GNSS, IMU"),
     traffic=(40, 12),
     ticks_per_s=21.4,
     real_time=1.07,

@@ -18,7 +18,7 @@ from gymnasium.vector.utils import batch_space, concatenate, create_empty_array,
 from basu.errors import SimulatorError, UserError
 from basu.gym import ShuttleEnv
 from basu.gym_spaces import action_space, observation_space
-from basu.jobs.job import Died, Played, PlayerSpec, Ready, Refused, raised
+from basu.jobs.job import Died, JobOutcome, PlayerSpec, Ready, Refused, raised
 from basu.jobs.processes import Processes
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
             self._workers[index].give(message)
         found, ended = dict[int, Any](), list[int]()
         for index, answer in self._answers(list(given)).items():
-            if isinstance(answer, Played):
+            if isinstance(answer, JobOutcome):
                 found[index] = answer.value
                 self._restarts[index] = 0
             else:
@@ -243,12 +243,12 @@ def open_environment(settings: dict[str, Any]) -> Iterator[Play]:
     """
     environment = ShuttleEnv(**settings)
 
-    def play(job: tuple[Any, ...]) -> Played:
+    def play(job: tuple[Any, ...]) -> JobOutcome:
         word, *arguments = job
         if word == "reset":
             seed, options = arguments
-            return Played(environment.reset(seed=seed, options=options))
-        return Played(environment.step(*arguments))
+            return JobOutcome(environment.reset(seed=seed, options=options))
+        return JobOutcome(environment.step(*arguments))
 
     try:
         yield play

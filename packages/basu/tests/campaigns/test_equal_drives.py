@@ -4,7 +4,7 @@ import pyarrow as pa
 import pytest
 
 from basu.campaigns.conclusions import distinct, first_of_equal, pairs, rates
-from basu.campaigns.evidence import Evidence
+from basu.campaigns.evidence import AgentEvidence
 from basu.campaigns.looks import Looks
 from basu.campaigns.settings import Until
 
@@ -53,7 +53,7 @@ def test_a_drive_that_its_seed_changed_stays_and_pairs_with_the_other_agents_equ
 
 @pytest.mark.parametrize("seeds", [1, 3])
 def test_rows_counted_one_by_one_and_a_filtered_table_are_the_same_evidence(seeds: int) -> None:
-    evidence = Evidence()
+    evidence = AgentEvidence()
     for row in table(seeds).to_pylist():
         evidence.add(row)
     assert [evidence.of(agent) for agent in ("a", "b")] == [

@@ -13,7 +13,7 @@ from basu.campaigns.columns import columns_of, schema_of
 from basu.cli import main
 from basu.errors import UserError
 from basu.metrics import registry
-from basu.metrics.registry import Drive, JudgedRun, Metric, Moment, built_in, user_metrics
+from basu.metrics.registry import Drive, JudgedRun, Metric, TimedMark, built_in, user_metrics
 from basu.metrics.result import Result, judge, result_schema
 from basu.metrics.stretches import spans
 from basu.outcome import Outcome, Status
@@ -92,7 +92,7 @@ class BrakeTime(Metric):
     def compute(self, drive: Drive) -> float:
         return float((drive.history.frames["applied_brake"] > 0.1).sum() * drive.history.facts.step_s)
 
-    def moments(self, result: JudgedRun, history: History) -> list[Moment]:
+    def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:
         return spans(history, history.frames["applied_brake"] > 0.1, "braked", "standing")
 
 

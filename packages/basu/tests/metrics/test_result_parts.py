@@ -8,8 +8,8 @@ from typing_extensions import NotRequired, TypedDict
 from basu.metrics.json_schema import Value, closed, schema_of
 from basu.metrics.result_parts import CollisionPart, EvidencePart, JudgementPart, ScoresPart, ThingPart, VerdictName
 from basu.metrics.score import Scores
-from basu.scenarios.criteria.criterion import Judgement, Thing
-from basu.scenarios.verdict import Collision, Verdict
+from basu.scenarios.criteria.criterion import Judgement, StandingThing
+from basu.scenarios.verdict import EgoContact, Verdict
 from fakes.results import a_result
 
 
@@ -56,7 +56,7 @@ def test_plain_annotations_have_theirs(kind: Any, schema: dict[str, Any]) -> Non
 
 @pytest.mark.parametrize(
     ("part", "written"),
-    [(JudgementPart, Judgement), (ThingPart, Thing), (CollisionPart, Collision), (ScoresPart, Scores)],
+    [(JudgementPart, Judgement), (ThingPart, StandingThing), (CollisionPart, EgoContact), (ScoresPart, Scores)],
 )
 def test_a_part_has_the_fields_that_are_written(part: type, written: Any) -> None:
     assert tuple(get_type_hints(part)) == written._fields

@@ -8,7 +8,7 @@ import pytest
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
-from basu.metrics.passengers.felt import Place
+from basu.metrics.passengers.felt import PassengerPlace
 from basu.metrics.score import driving_score, infraction_score, infractions, score
 from basu.metrics.scoring import Scoring, read_scoring_file, scoring_layer, scoring_to_json
 from basu.settings.resolve import resolve
@@ -123,7 +123,7 @@ def test_a_scoring_survives_a_round_trip() -> None:
         infraction_weight=0.7,
         route_deviation_m=1.5,
         comfort_weights=ComfortWeights(balance=1.0, service=0.0),
-        standing_place=Place(1.0, 0.0, 0.25),
+        standing_place=PassengerPlace(1.0, 0.0, 0.25),
         harsh_stop_mps2=2.0,
     )
     assert scoring_in(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring

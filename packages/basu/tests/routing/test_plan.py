@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.routing import Control, ControlKind, plan
+from basu.routing import ControlKind, RouteControl, plan
 from basu.routing.plan import SAME_LINE_M, _lines
 from basu.routing.route_file import RouteDescription, RoutePoint, StopMark
 from fakes.crossing_map import crossing
 
 
-def light(landmark_id: str, s_m: float) -> Control:
-    return Control(
+def light(landmark_id: str, s_m: float) -> RouteControl:
+    return RouteControl(
         kind=ControlKind.TRAFFIC_LIGHT, landmark_id=landmark_id, s_m=s_m, x_m=0.0, y_m=0.0, z_m=0.0, yaw_rad=0.0
     )
 

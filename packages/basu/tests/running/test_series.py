@@ -19,7 +19,7 @@ from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish
 from basu.routing.route_file import RouteDescription
 from basu.running.drive import DriveDone
-from basu.running.preparation import Job
+from basu.running.preparation import RequestedRun
 from basu.running.series import RESOLVED, Series, conditions, open_series
 from basu.settings.option import fields_of
 from basu.simulator import connect
@@ -27,7 +27,7 @@ from fakes.results import a_result
 from servers import RunningServer
 
 ROUTE = RouteDescription(id="0", town="Linden", points=(), stops=(), source="r.xml")
-JOBS = tuple(Job(number, ROUTE, "r", number, number) for number in range(4))
+JOBS = tuple(RequestedRun(number, ROUTE, "r", number, number) for number in range(4))
 GIVEN = {"the agent": "basic", "--seed": 0, "the routes": ("0",)}
 
 
@@ -35,14 +35,14 @@ def opened(folder: Path, *, resume: bool = False, given: dict[str, Any] | None =
     return open_series(folder, given or GIVEN, JOBS, "basic", resume=resume)
 
 
-def finished(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> DriveDone:
+def finished(series: Series, job: RequestedRun, status: Status = Status.COMPLETED, *, safe: bool = False) -> DriveDone:
     """A run that is written and not yet in its place."""
     draft, document = make_draft(series.folder, series.name(job.number)), a_result(status, safe=safe)
     (draft / "result.json").write_text(json.dumps(document))
     return DriveDone(draft, Result.from_document(document), number=job.number)
 
 
-def run(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> Path:
+def run(series: Series, job: RequestedRun, status: Status = Status.COMPLETED, *, safe: bool = False) -> Path:
     folder = series.publish(finished(series, job, status, safe=safe)).folder
     assert folder is not None
     return folder

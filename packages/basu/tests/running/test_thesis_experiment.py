@@ -14,7 +14,7 @@ from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import RunRecord
 from basu.running import thesis_experiment
-from basu.running.thesis_experiment import Case
+from basu.running.thesis_experiment import ExperimentCase
 from fakes.run_records import crashing, record, written
 from servers import RunningServer
 
@@ -24,7 +24,7 @@ def leaving_(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[str], RunRe
     """Replace the drives by ones that take no time, need no simulator and leave the given results."""
 
     def leaving(made: Callable[[str], RunRecord]) -> None:
-        def drive(case: Case, options: RunOptions, *_: object) -> Path:
+        def drive(case: ExperimentCase, options: RunOptions, *_: object) -> Path:
             return written(options.output / case.row, made(case.agent))
 
         monkeypatch.setattr(thesis_experiment, "_drive", drive)

@@ -11,7 +11,7 @@ from basu.scenarios.characteristics import (
     KINDS,
     OF_SCENARIO,
     Characteristics,
-    Junction,
+    JunctionRelation,
     Lighting,
     characteristics_of,
     measured,
@@ -112,8 +112,8 @@ def test_conditions_choose_cases_that_have_all_of_them() -> None:
     assert {case.scenario.__name__ for case in round_} == {"Roundabout"}
     both = having(every, [("junction", "roundabout"), ("junction", "intersection")])
     assert {characteristics_of(case.case, case.scenario).junction for case in both} == {
-        Junction.ROUNDABOUT,
-        Junction.INTERSECTION,
+        JunctionRelation.ROUNDABOUT,
+        JunctionRelation.INTERSECTION,
     }
     with pytest.raises(ScenarioError, match="none of the 4 cases has lighting=dusk and alignment=curve"):
         having(round_[:4], [("lighting", "dusk"), ("alignment", "curve")])

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from basu.scenarios.criteria import Played, Thing
+from basu.scenarios.criteria import Played, StandingThing
 from basu.scenarios.exercise import EFFECT_MPS, came_about, effect_felt
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route
 from fakes.played import played
@@ -86,7 +86,7 @@ def test_a_side_road_that_empties_while_the_ego_stands_at_its_stop_sign_is_not_m
 
 
 def test_partners_are_an_ego_that_moves_unless_the_scenario_names_them() -> None:
-    beside = Thing("van", 24.0, 2.4, 0.0, 2.0, 1.0)
+    beside = StandingThing("van", 24.0, 2.4, 0.0, 2.0, 1.0)
     history = ride(12.0, eastward(lambda _: 2.0, 13.0), others=[(9, crossing(2.0))])
     case = played(history, things=(beside,))
     assert came_about(case).holds is False

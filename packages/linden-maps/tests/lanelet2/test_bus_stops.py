@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linden.maps.opendrive.parse import parse
-from linden_maps.lanelet2.bus_stops import LENGTH_M, Stop, shuttle_stops
+from linden_maps.lanelet2.bus_stops import LENGTH_M, KerbStop, shuttle_stops
 from linden_maps.lanelet2.convert import Wanted, convert
 from linden_maps.lanelet2.model import bounds_of, without_lanelets
 from linden_maps.lanelet2.osm import osm_bytes
@@ -49,7 +49,7 @@ def test_an_area_lies_on_the_lanelets_that_refer_to_it_near_the_stop(linden, lin
 
 
 def test_a_stop_far_from_any_lane_is_reported() -> None:
-    near, lost = Stop("A", "near", 20.0, -3.0), Stop("X", "nowhere", 50_000.0, 0.0)
+    near, lost = KerbStop("A", "near", 20.0, -3.0), KerbStop("X", "nowhere", 50_000.0, 0.0)
     converted = convert(parse(document(road(1, 0, 40, [(-1, lane(-1))]))), Wanted(stops=(near, lost)))
     assert converted.lost_stops == (lost,)
     assert _areas(converted.lanelet_map).keys() == {"A"}
@@ -67,7 +67,7 @@ def test_a_roundabout_names_its_lanelets_by_role(linden, linden_everything) -> N
 
 
 def test_format_2_is_named_in_the_file_only_where_it_is_wanted(linden_everything, linden_lanelets) -> None:
-    street, stop = parse(document(road(1, 0, 40, [(-1, lane(-1))]))), Stop("A", "near", 20.0, -3.0)
+    street, stop = parse(document(road(1, 0, 40, [(-1, lane(-1))]))), KerbStop("A", "near", 20.0, -3.0)
     versions = [
         ET.fromstring(osm_bytes(convert(street, wanted).lanelet_map)).find("MetaInfo").get("format_version")
         for wanted in (Wanted(stops=(stop,)), Wanted(roundabouts=True), Wanted())

@@ -8,7 +8,7 @@ import pytest
 from shapely import LineString, Polygon
 
 from linden.maps.opendrive.parse import parse
-from linden_maps.lanelet2.convert import Converted, convert
+from linden_maps.lanelet2.convert import ConvertedMap, convert
 from linden_maps.lanelet2.model import LaneletMap, bounds_of
 from linden_maps.lanelet2.shared import NEAR_M
 from vector_map_town import document, lane, road
@@ -18,11 +18,11 @@ C_INT = 2**31
 
 
 @pytest.fixture(scope="module")
-def linden_map(linden_lanelets: Converted) -> LaneletMap:
+def linden_map(linden_lanelets: ConvertedMap) -> LaneletMap:
     return linden_lanelets.lanelet_map
 
 
-def in_junctions(converted: Converted) -> dict[int, list[int]]:
+def in_junctions(converted: ConvertedMap) -> dict[int, list[int]]:
     """The road lanelets of each junction."""
     found = defaultdict(list)
     for lanelet, stretch in zip(converted.lanelet_of, converted.network.stretches, strict=True):
@@ -46,7 +46,7 @@ def test_ids_that_tags_name_fit_an_int_and_are_there(linden_map: LaneletMap) -> 
     assert {linden_map.ways[number].tags["type"] for number in lights} == {"traffic_light"}
 
 
-def test_ways_side_by_side_through_a_junction_share_their_bound(linden_lanelets: Converted) -> None:
+def test_ways_side_by_side_through_a_junction_share_their_bound(linden_lanelets: ConvertedMap) -> None:
     lanelet_map, apart, shared = linden_lanelets.lanelet_map, [], 0
     for lanelets in in_junctions(linden_lanelets).values():
         ways: dict[frozenset[int], dict[int, set[bool]]] = defaultdict(lambda: defaultdict(set))
@@ -65,7 +65,7 @@ def test_ways_side_by_side_through_a_junction_share_their_bound(linden_lanelets:
     assert shared > 300
 
 
-def test_areas_are_simple_and_hold_their_ways_whole(linden_lanelets: Converted) -> None:
+def test_areas_are_simple_and_hold_their_ways_whole(linden_lanelets: ConvertedMap) -> None:
     lanelet_map = linden_lanelets.lanelet_map
     inside = defaultdict(list)
     for number, lanelet in lanelet_map.lanelets("road"):
@@ -118,7 +118,7 @@ def test_a_shoulder_beside_no_lane_is_left_out_and_counted() -> None:
     assert [stretch.subtype for stretch in network.stretches] == ["road", "walkway"]
 
 
-def test_bounds_end_where_they_did(linden_lanelets: Converted) -> None:
+def test_bounds_end_where_they_did(linden_lanelets: ConvertedMap) -> None:
     """A lanelet's outline keeps its corners when it shares a bound: those of the lanelets before and after it."""
     lanelet_map = linden_lanelets.lanelet_map
     sides = {n: bounds_of(lanelet_map, lanelet_map.relations[n]) for n, _ in lanelet_map.lanelets("road")}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linden_maps.lanelet2.shared import NEAR_M, one_line
-from linden_maps.lanelet2.stretches import Network, Piece, Side, Stretch
+from linden_maps.lanelet2.stretches import LaneletNetwork, LanePiece, Side, Stretch
 
 BOW = np.linspace(0.0, np.pi, 40)
 
@@ -21,7 +21,7 @@ def one_way(road: int, *, near_is_left: bool, forward: bool = True, junction: in
     """A way with two sides: boundary 0 is the one that may be shared."""
     near, far = (Side(road, "road", ((0, boundary, 0.0, 10.0),)) for boundary in (0, -1))
     left, right = (near, far) if near_is_left else (far, near)
-    return Stretch(road, "road", (Piece(0, -1, 0.0, 10.0, road),), forward, junction, left, right)
+    return Stretch(road, "road", (LanePiece(0, -1, 0.0, 10.0, road),), forward, junction, left, right)
 
 
 def joined(stretches: list[Stretch], near: list[np.ndarray]) -> tuple[dict, list[np.ndarray]]:
@@ -35,7 +35,7 @@ def joined(stretches: list[Stretch], near: list[np.ndarray]) -> tuple[dict, list
             starts_at_zero = line[0, 0] == 0.0
             ends = [0, 1] if starts_at_zero else [1, 0]
             joints += ends if is_near else [100 + 2 * len(lines), 101 + 2 * len(lines)]
-    network = Network(tuple(stretches), ((),) * len(stretches), {})
+    network = LaneletNetwork(tuple(stretches), ((),) * len(stretches), {})
     return one_line(network, index, lines, lambda end: joints[end]), lines
 
 

@@ -12,7 +12,7 @@ from linden.protocol.values.space import Rotation
 from linden.scenery.mesh import Material, Mesh
 from linden_maps.models.fittings import hoop
 from linden_maps.models.solids import (
-    Look,
+    FaceLook,
     ball,
     bounds,
     box,
@@ -26,7 +26,7 @@ from linden_maps.models.solids import (
     wedge,
 )
 
-PLAIN = Look(Material.PLAIN, (1, 2, 3))
+PLAIN = FaceLook(Material.PLAIN, (1, 2, 3))
 
 SOLIDS = {
     "box": (box((0, 0, 0), (1, 2, 3), PLAIN), 6.0),

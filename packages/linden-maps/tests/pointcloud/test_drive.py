@@ -9,19 +9,19 @@ from linden.scenery.mesh import Mesh, join
 from linden.sensors.casting.choose import caster_of
 from linden.sensors.devices.lidar import SemanticLidar
 from linden_maps.pointcloud.cloud import Cloud, in_map
-from linden_maps.pointcloud.drive import Lidar, Place, drive
+from linden_maps.pointcloud.drive import Lidar, SensorPlace, drive
 
 FEW = Lidar(channels=16, upper_fov_deg=5.0, lower_fov_deg=-40.0, range_m=60.0, columns=360)
 
 
-def driven(standing: Mesh, *places: Place, lidar: Lidar = FEW) -> list[Cloud]:
+def driven(standing: Mesh, *places: SensorPlace, lidar: Lidar = FEW) -> list[Cloud]:
     return [in_map(scan) for scan in drive(places, lidar, caster_of(standing, []), standing)]
 
 
 def test_a_house_in_the_north_is_in_the_north_from_wherever_it_is_seen() -> None:
     # CARLA's y is south: this house stands 10 m north, 2 m high, and east of both places
     house = box((2.0, 1.0, 1.0), centre_m=(20.0, -10.0, 1.0), tag=3)
-    for place in (Place(15.0, 0.0, 2.0, 0.0), Place(22.0, 3.0, 2.0, 2.0)):
+    for place in (SensorPlace(15.0, 0.0, 2.0, 0.0), SensorPlace(22.0, 3.0, 2.0, 2.0)):
         (cloud,) = driven(join([floor(), house]), place)
         assert cloud.label is not None
         wall = cloud.points_m[cloud.label == 3]
@@ -33,7 +33,7 @@ def test_a_house_in_the_north_is_in_the_north_from_wherever_it_is_seen() -> None
 
 
 def test_a_scan_is_a_whole_turn_and_goes_no_farther_than_the_range() -> None:
-    (cloud,) = driven(floor(), Place(0.0, 0.0, 2.0, 0.3))
+    (cloud,) = driven(floor(), SensorPlace(0.0, 0.0, 2.0, 0.3))
     reach = np.linalg.norm(cloud.points_m - (0.0, 0.0, 2.0), axis=1)
     assert reach.max() <= 60.0 + 1e-3
     yaw = np.sort(np.arctan2(cloud.points_m[:, 1], cloud.points_m[:, 0]))
@@ -44,7 +44,7 @@ def test_it_sees_what_the_servers_lidar_sees_there() -> None:
     standing = join(
         [floor(), box((2.0, 1.0, 1.0), centre_m=(9.0, -4.0, 1.0)), box((1.0, 6.0, 3.0), centre_m=(-8.0, 0.0, 3.0))]
     )
-    place = Place(1.0, 2.0, 2.0, 0.7)
+    place = SensorPlace(1.0, 2.0, 2.0, 0.7)
     sensor = SemanticLidar(
         described(
             "sensor.lidar.ray_cast_semantic",
@@ -57,7 +57,7 @@ def test_it_sees_what_the_servers_lidar_sees_there() -> None:
 
 
 def test_points_that_are_not_finite_are_left_out() -> None:
-    (scan,) = drive([Place(0.0, 0.0, 2.0, 0.0)], FEW, caster_of(floor(), []), floor())
+    (scan,) = drive([SensorPlace(0.0, 0.0, 2.0, 0.0)], FEW, caster_of(floor(), []), floor())
     points = scan.cloud.points_m.copy()
     points[3, 1], points[5] = np.nan, np.inf
     cloud = in_map(scan._replace(cloud=Cloud(points, scan.cloud.label)))
@@ -68,7 +68,7 @@ def test_points_that_are_not_finite_are_left_out() -> None:
 
 
 def test_a_pose_turns_before_it_moves() -> None:
-    (scan,) = drive([Place(0.0, 0.0, 2.0, 0.0)], FEW, caster_of(floor(), []), floor())
+    (scan,) = drive([SensorPlace(0.0, 0.0, 2.0, 0.0)], FEW, caster_of(floor(), []), floor())
     quarter = np.array([[0.0, -1.0, 0.0, 10.0], [1.0, 0.0, 0.0, 20.0], [0.0, 0.0, 1.0, 0.0]])
     moved = in_map(scan._replace(map_from_sensor=quarter)).points_m
     np.testing.assert_allclose(moved, scan.cloud.points_m[:, [1, 0, 2]] * (-1.0, 1.0, 1.0) + (10.0, 20.0, 0.0))

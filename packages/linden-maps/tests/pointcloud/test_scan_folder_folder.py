@@ -8,7 +8,7 @@ import pytest
 from fakes.pcd_files import pcd
 from linden.errors import UserError
 from linden_maps.pointcloud.cloud import Cloud, Scan, in_map
-from linden_maps.pointcloud.drive import Place
+from linden_maps.pointcloud.drive import SensorPlace
 from linden_maps.pointcloud.scan_folder import kept_scans, recorded
 
 POINT = {"x": np.float32([1.0]), "y": np.float32([2.0]), "z": np.float32([3.0])}
@@ -56,7 +56,7 @@ def test_a_folder_without_scans_gets_a_sentence(tmp_path: Path) -> None:
 
 def test_kept_scans_come_back_where_they_were(tmp_path: Path) -> None:
     points = np.array([[1.0, 2.0, 3.0], [-4.0, 0.5, 0.0]])
-    poses = [Place(100.0, 50.0, 2.0, 0.5), Place(-3.0, 7.0, 240.0, -3.0)]
+    poses = [SensorPlace(100.0, 50.0, 2.0, 0.5), SensorPlace(-3.0, 7.0, 240.0, -3.0)]
     scans = [Scan(pose.map_from_sensor, Cloud(points * (n + 1), np.uint32([n, 9])), 1) for n, pose in enumerate(poses)]
     assert list(kept_scans(scans, tmp_path / "new")) == scans
     for scan, again in zip(scans, recorded(tmp_path / "new").scans(), strict=True):

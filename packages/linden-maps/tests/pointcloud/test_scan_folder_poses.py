@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from linden.errors import UserError
-from linden_maps.pointcloud.drive import Place
+from linden_maps.pointcloud.drive import SensorPlace
 from linden_maps.pointcloud.scan_folder import pose_line, read_poses, write_poses
 
 
 def test_a_pose_comes_back_as_it_was_written(tmp_path: Path) -> None:
     file = tmp_path / "poses.txt"
-    poses = [Place(10.5, -2000.25, 245.0, heading).map_from_sensor for heading in (0.0, 1.0, math.pi, -2.5)]
+    poses = [SensorPlace(10.5, -2000.25, 245.0, heading).map_from_sensor for heading in (0.0, 1.0, math.pi, -2.5)]
     write_poses(file, [pose_line(f"{number}", pose) for number, pose in enumerate(poses)])
     for pose, again in zip(poses, read_poses(file, ["0", "1", "2", "3"]), strict=True):
         np.testing.assert_allclose(again, pose, atol=1e-9)

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from linden_maps.sumo.network import Converted, convert
+from linden_maps.sumo.network import ConvertedNetwork, convert
 from tracing import untraced_here
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
 
 
 @pytest.fixture(scope="session")
-def linden(tmp_path_factory: pytest.TempPathFactory) -> tuple[Converted, Path]:
+def linden(tmp_path_factory: pytest.TempPathFactory) -> tuple[ConvertedNetwork, Path]:
     """What was converted, and the file of the network."""
     target = tmp_path_factory.mktemp("sumo") / "Linden.net.xml"
     text = (resources.files("linden") / "data" / "Linden.xodr").read_bytes()

@@ -14,13 +14,13 @@ from linden_maps.sumo import programs
 from linden_maps.sumo.bus_stops import RouteStop, bus_stops, stops_file
 from linden_maps.sumo.check import compare
 from linden_maps.sumo.demand import Demand, draw, trips_per_hour
-from linden_maps.sumo.network import Converted, convert, with_lane_speeds
+from linden_maps.sumo.network import ConvertedNetwork, convert, with_lane_speeds
 from linden_maps.sumo.vehicle_types import MIX, blueprints, types_file
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
 
 
-def test_linden_keeps_every_sign_and_light(linden: tuple[Converted, Path]) -> None:
+def test_linden_keeps_every_sign_and_light(linden: tuple[ConvertedNetwork, Path]) -> None:
     compared = compare(linden[0])
     rows = {what: (in_map, in_net) for what, in_map, in_net in compared.table}
     assert rows["stop signs"] == ("157", "157")
@@ -33,7 +33,7 @@ def test_linden_keeps_every_sign_and_light(linden: tuple[Converted, Path]) -> No
     assert compared.misfits == ()
 
 
-def test_a_lost_sign_and_a_wrong_speed_are_misfits(linden: tuple[Converted, Path]) -> None:
+def test_a_lost_sign_and_a_wrong_speed_are_misfits(linden: tuple[ConvertedNetwork, Path]) -> None:
     converted = linden[0]
     edge, signal = next(iter(converted.controls.stops.items()))
     unsigned = [each for each in converted.net.connections if each.start != edge]
@@ -45,14 +45,16 @@ def test_a_lost_sign_and_a_wrong_speed_are_misfits(linden: tuple[Converted, Path
 
 
 @pytest.mark.unmeasured
-def test_the_network_has_no_date_and_the_same_bytes_twice(linden: tuple[Converted, Path], tmp_path: Path) -> None:
+def test_the_network_has_no_date_and_the_same_bytes_twice(
+    linden: tuple[ConvertedNetwork, Path], tmp_path: Path
+) -> None:
     again = tmp_path / "again.net.xml"
     convert((resources.files("linden") / "data" / "Linden.xodr").read_bytes(), again)
     assert again.read_bytes() == linden[1].read_bytes()
     assert b"generated on" not in again.read_bytes()
 
 
-def test_lights_have_the_server_s_program_and_name_their_heads(linden: tuple[Converted, Path]) -> None:
+def test_lights_have_the_server_s_program_and_name_their_heads(linden: tuple[ConvertedNetwork, Path]) -> None:
     root = etree.parse(str(linden[1])).getroot()
     lights = list(root.iter("tlLogic"))
     assert len(lights) == 6
@@ -67,7 +69,7 @@ def test_lights_have_the_server_s_program_and_name_their_heads(linden: tuple[Con
 
 
 def test_streets_end_at_the_stop_line_before_a_marked_crosswalk_and_people_cross_on_the_marking(
-    linden: tuple[Converted, Path],
+    linden: tuple[ConvertedNetwork, Path],
 ) -> None:
     converted, path = linden
     net = converted.net
@@ -104,7 +106,7 @@ def test_lanes_without_a_speed_take_that_of_their_road() -> None:
     assert speeds == [[("25", "mph")], [("10", "mph")], []]
 
 
-def test_stops_of_a_route_file_lie_on_their_side_of_the_street(linden: tuple[Converted, Path]) -> None:
+def test_stops_of_a_route_file_lie_on_their_side_of_the_street(linden: tuple[ConvertedNetwork, Path]) -> None:
     net = linden[0].net
     both = (RouteStop("S3E", "", 620.257, -368.426), RouteStop("S3W", "", 629.571, -370.938))
     found, lost = bus_stops(net, (*both, RouteStop("far", "", 1e5, 1e5)))
@@ -116,7 +118,7 @@ def test_stops_of_a_route_file_lie_on_their_side_of_the_street(linden: tuple[Con
 
 
 @pytest.mark.unmeasured
-def test_a_demand_follows_its_seed_its_hour_and_its_scale(linden: tuple[Converted, Path]) -> None:
+def test_a_demand_follows_its_seed_its_hour_and_its_scale(linden: tuple[ConvertedNetwork, Path]) -> None:
     net = linden[0].net
     trips = draw(net, Demand())
     assert trips == draw(net, Demand())
@@ -135,7 +137,9 @@ def test_a_demand_follows_its_seed_its_hour_and_its_scale(linden: tuple[Converte
         (Demand(scale=-1.0), "the demand's scale is -1; give 0 or more"),
     ],
 )
-def test_figures_that_mean_nothing_are_refused(demand: Demand, sentence: str, linden: tuple[Converted, Path]) -> None:
+def test_figures_that_mean_nothing_are_refused(
+    demand: Demand, sentence: str, linden: tuple[ConvertedNetwork, Path]
+) -> None:
     with pytest.raises(UserError, match=sentence):
         draw(linden[0].net, demand)
 

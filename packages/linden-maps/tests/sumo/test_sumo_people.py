@@ -15,7 +15,7 @@ from linden_maps.sumo.bus_stops import BusStop, RouteStop, bus_stops, parking_ar
 from linden_maps.sumo.check import compare, walkable
 from linden_maps.sumo.demand import Demand, draw
 from linden_maps.sumo.net import point_at
-from linden_maps.sumo.network import Converted
+from linden_maps.sumo.network import ConvertedNetwork
 from linden_maps.sumo.people import FARTHER_M, WALK_REACH_M, draw_riders, draw_walks, people_file
 from linden_maps.sumo.places import SCHOOL, TRANSIT, Place, car_streets, pavements, places_of
 
@@ -34,11 +34,11 @@ def places() -> tuple[Place, ...]:
 
 
 @pytest.fixture(scope="module")
-def stops(linden: tuple[Converted, Path]) -> tuple[BusStop, ...]:
+def stops(linden: tuple[ConvertedNetwork, Path]) -> tuple[BusStop, ...]:
     return bus_stops(linden[0].net, STOPS)[0]
 
 
-def test_a_crosswalk_without_a_crossing_and_cut_pavements_are_misfits(linden: tuple[Converted, Path]) -> None:
+def test_a_crosswalk_without_a_crossing_and_cut_pavements_are_misfits(linden: tuple[ConvertedNetwork, Path]) -> None:
     converted = linden[0]
     net = converted.net
     assert walkable(net) == 1
@@ -50,7 +50,7 @@ def test_a_crosswalk_without_a_crossing_and_cut_pavements_are_misfits(linden: tu
 
 
 def test_schools_and_stations_of_linden_lie_at_streets(
-    linden: tuple[Converted, Path], places: tuple[Place, ...]
+    linden: tuple[ConvertedNetwork, Path], places: tuple[Place, ...]
 ) -> None:
     assert Counter(place.kind for place in places) == {"school": 3, "transit": 4, "community": 2}
     assert len(car_streets(linden[0].net, places, SCHOOL)) == 3
@@ -59,7 +59,7 @@ def test_schools_and_stations_of_linden_lie_at_streets(
 
 
 def test_walks_follow_seed_hour_and_scale_and_lead_to_schools_when_these_begin(
-    linden: tuple[Converted, Path], places: tuple[Place, ...]
+    linden: tuple[ConvertedNetwork, Path], places: tuple[Place, ...]
 ) -> None:
     net = linden[0].net
     walks = draw_walks(net, Demand(), places)
@@ -76,7 +76,9 @@ def test_walks_follow_seed_hour_and_scale_and_lead_to_schools_when_these_begin(
         assert sum((a - b) ** 2 for a, b in zip(first[:2], last[:2], strict=True)) <= WALK_REACH_M**2
 
 
-def test_cars_fetch_from_schools_and_park_at_homes(linden: tuple[Converted, Path], places: tuple[Place, ...]) -> None:
+def test_cars_fetch_from_schools_and_park_at_homes(
+    linden: tuple[ConvertedNetwork, Path], places: tuple[Place, ...]
+) -> None:
     net = linden[0].net
     schools = {edge.id for edge in car_streets(net, places, SCHOOL)}
     spaces = parking_areas(net)
@@ -90,7 +92,7 @@ def test_cars_fetch_from_schools_and_park_at_homes(linden: tuple[Converted, Path
     assert all(trip.from_space is None or edge_of[trip.from_space] == trip.start for trip in trips)
 
 
-def test_a_trip_ends_in_a_parking_space_or_where_the_network_ends(linden: tuple[Converted, Path]) -> None:
+def test_a_trip_ends_in_a_parking_space_or_where_the_network_ends(linden: tuple[ConvertedNetwork, Path]) -> None:
     net = linden[0].net
     trips = draw(net, Demand(), (), parking_areas(net))
     assert len(net.outer) == 11, "the ends of Linden's map"
@@ -99,7 +101,7 @@ def test_a_trip_ends_in_a_parking_space_or_where_the_network_ends(linden: tuple[
     assert all(trip.is_under_way or trip.from_space or net.edges[trip.start].start in net.outer for trip in trips)
 
 
-def test_parking_spaces_keep_clear_of_what_stands_at_the_kerb(linden: tuple[Converted, Path]) -> None:
+def test_parking_spaces_keep_clear_of_what_stands_at_the_kerb(linden: tuple[ConvertedNetwork, Path]) -> None:
     net = linden[0].net
     spaces = parking_areas(net)
     space = spaces[len(spaces) // 2]
@@ -110,7 +112,7 @@ def test_parking_spaces_keep_clear_of_what_stands_at_the_kerb(linden: tuple[Conv
 
 
 def test_passengers_ride_onwards_and_never_to_the_other_side_of_the_street(
-    linden: tuple[Converted, Path], stops: tuple[BusStop, ...]
+    linden: tuple[ConvertedNetwork, Path], stops: tuple[BusStop, ...]
 ) -> None:
     net = linden[0].net
     riders = draw_riders(net, Demand(hour=17.0, scale=3.0), stops)

@@ -4,7 +4,7 @@ import numpy as np
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, faces
-from linden.scenery.patches import Look, polygons
+from linden.scenery.patches import PatchLook, polygons
 from linden.scenery.scene.objects import BOX, THING, Scene
 from linden_maps.unreal.parts import MOST_COLOURS, Part, parts_of
 
@@ -49,7 +49,7 @@ def test_texture_coordinates_are_metres_along_the_surface(parts: list[Part]) -> 
 def test_rare_colours_become_the_nearest_frequent_one() -> None:
     corners = np.array([[(i, 0.0, 0.0), (i + 0.5, 0.0, 0.0), (i, 0.5, 0.0)] for i in range(40)])
     shades = np.array([(10 * (i % 20), 0, 0) for i in range(40)])
-    mesh = polygons(corners, Look(Material.SIDING, SemanticTag.BUILDINGS, shades))
+    mesh = polygons(corners, PatchLook(Material.SIDING, SemanticTag.BUILDINGS, shades))
     (part,) = parts_of(mesh, Scene(np.zeros(0, THING), np.zeros(0, BOX)), "Town")
     assert len(part.surfaces) == MOST_COLOURS
     kept = np.array([surface.colour[0] for surface in part.surfaces])
@@ -59,7 +59,7 @@ def test_rare_colours_become_the_nearest_frequent_one() -> None:
 
 
 def test_an_empty_mesh_has_no_parts() -> None:
-    nothing = polygons(np.zeros((0, 3, 3)), Look(Material.PLAIN, SemanticTag.ROADS, (0, 0, 0)))
+    nothing = polygons(np.zeros((0, 3, 3)), PatchLook(Material.PLAIN, SemanticTag.ROADS, (0, 0, 0)))
     assert (
         parts_of(
             nothing._replace(faces=faces(0, Material.PLAIN, 1, (0, 0, 0))),

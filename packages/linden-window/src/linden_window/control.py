@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType
@@ -69,10 +69,10 @@ def _weather(order: dict[str, Any], context: "Context", _clock: "FrameClock") ->
 
 def _spawn(order: dict[str, Any], context: "Context", _clock: "FrameClock") -> str:
     blueprint = context.world.library.find(str(order["type"]))
-    if blueprint.kind not in (Kind.VEHICLE, Kind.WALKER, Kind.PROP):
+    if blueprint.kind not in (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP):
         return f"{order['type']} cannot be spawned with a click; choose a vehicle, a walker or a prop."
     x, y, z = (_number(value) for value in order["place"])
-    above_m = _ABOVE_M + (blueprint.box.extent.z if blueprint.kind is Kind.WALKER else 0.0)
+    above_m = _ABOVE_M + (blueprint.box.extent.z if blueprint.kind is BlueprintKind.WALKER else 0.0)
     place = Transform(Vector3D(x, y, z + above_m), Rotation(0.0, _number(order["yaw"]), 0.0))
     role = AttributeValue("role_name", AttributeType.STRING, "window")
     record = context.world.spawn(ActorDescription(blueprint.definition.uid, blueprint.definition.id, (role,)), place)

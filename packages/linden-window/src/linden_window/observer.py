@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.protocol.values.debug_shapes import Arrow, Box, HudArrow, HudBox, HudLine, HudPoint, Line, Point, Text
 from linden.protocol.values.snapshot import VEHICLE_ROW
 from linden.scenery.scene.debug_shapes import KeptShape
@@ -18,7 +18,7 @@ from linden_window.poses import POSE
 if TYPE_CHECKING:
     from linden.world import World
 
-_SHOWN = (Kind.VEHICLE, Kind.WALKER, Kind.PROP, Kind.SENSOR)
+_SHOWN = (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP, BlueprintKind.SENSOR)
 MOST_SHAPES = 2000
 """More debug shapes a frame than this are not sent: encoding them would take longer than the tick."""
 _SHORT_MPS = 327.0
@@ -89,12 +89,12 @@ class WorldObserver:
         actors = episode.actors
         self._records = [r for r in actors if r.kind in _SHOWN or r.id == episode.spectator_id]
         self._rows = np.array([actors.row(record.id) for record in self._records], np.intp)
-        vehicles = [i for i, r in enumerate(self._records) if r.kind is Kind.VEHICLE and r.slot != NO_BODY]
+        vehicles = [i for i, r in enumerate(self._records) if r.kind is BlueprintKind.VEHICLE and r.slot != NO_BODY]
         self._vehicles = np.array(vehicles, np.intp)
         self._rows_of_vehicles = self._rows[self._vehicles]
         self._lit = [self._records[index] for index in vehicles]
         self._slots = np.array([record.slot for record in self._lit], np.intp)
-        self._walkers = [(i, r.id) for i, r in enumerate(self._records) if r.kind is Kind.WALKER]
+        self._walkers = [(i, r.id) for i, r in enumerate(self._records) if r.kind is BlueprintKind.WALKER]
         self._out = np.zeros(len(self._records), POSE)
         self._out["id"] = [record.id for record in self._records]
         self._version = actors.version

@@ -16,7 +16,7 @@ from linden.maps.cache import MapCache
 from linden.maps.library import LoadedMap
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh_cache import standing_of
-from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.objects import ObjectKind
 from linden.scenery.scene.objects import Scene as Things
 from linden.scenery.streets.simplified_lanes import simplified_lanes
 from linden.simulation.surroundings import scenery_of
@@ -110,11 +110,11 @@ def _switched(things: Things) -> dict[str, Any]:
     thing = things.boxes["thing"]
     kind_of_box = kinds[thing]
     number_of = np.zeros(len(kinds), np.int64)
-    for kind in (Kind.TRAFFIC_LIGHT, Kind.STREET_LAMP):
+    for kind in (ObjectKind.TRAFFIC_LIGHT, ObjectKind.STREET_LAMP):
         number_of[kinds == kind] = np.arange((kinds == kind).sum())
     return {
         name: [(box, int(number_of[thing[box]])) for box in np.flatnonzero(kind_of_box == kind).tolist()]
-        for name, kind in (("lights", Kind.TRAFFIC_LIGHT), ("lamps", Kind.STREET_LAMP))
+        for name, kind in (("lights", ObjectKind.TRAFFIC_LIGHT), ("lamps", ObjectKind.STREET_LAMP))
     }
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from linden.blueprints.library import Blueprint, Kind, packaged
+from linden.blueprints.library import Blueprint, BlueprintKind, packaged
 from linden.errors import UserError
 from linden.maps.ground import Ground
 from linden.maps.library import HOME_MAP, MapLibrary
@@ -42,7 +42,7 @@ STEP_S = 0.05
 FEWEST_WORLDS = 32
 """What a thread takes at least: to hand fewer out costs more than to work on them."""
 
-_KINDS = (Kind.VEHICLE, Kind.WALKER, Kind.PROP)
+_KINDS = (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP)
 _MOST_WORLDS = 10_000_000
 
 

@@ -7,13 +7,13 @@ import time
 import pytest
 
 from linden.blueprints.attributes import bounds_of
-from linden.blueprints.library import Blueprint, BlueprintLibrary, Kind
+from linden.blueprints.library import Blueprint, BlueprintKind, BlueprintLibrary
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDefinition, ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType, SemanticTag
 
 LIBRARY = BlueprintLibrary.load()
-VEHICLES = [blueprint for blueprint in LIBRARY if blueprint.kind is Kind.VEHICLE]
+VEHICLES = [blueprint for blueprint in LIBRARY if blueprint.kind is BlueprintKind.VEHICLE]
 SHUTTLE = LIBRARY.find("vehicle.easymile.ez10")
 
 
@@ -78,9 +78,9 @@ def test_every_default_converts_to_its_type() -> None:
 def test_every_body_has_a_size_and_stands_on_its_origin() -> None:
     for blueprint in LIBRARY:
         assert min(blueprint.box.extent) > 0.0, blueprint.definition.id
-        if blueprint.kind is Kind.VEHICLE:
+        if blueprint.kind is BlueprintKind.VEHICLE:
             assert abs(blueprint.box.location.z - blueprint.box.extent.z) < 0.2, blueprint.definition.id
-        if blueprint.kind is Kind.WALKER:
+        if blueprint.kind is BlueprintKind.WALKER:
             assert blueprint.box.location.z == 0.0
 
 
@@ -172,7 +172,7 @@ def test_a_cybertruck_has_no_colour_to_choose() -> None:
 
 def test_every_walker_stands_walks_and_runs() -> None:
     for blueprint in LIBRARY:
-        if blueprint.kind is Kind.WALKER:
+        if blueprint.kind is BlueprintKind.WALKER:
             speed = next(a for a in blueprint.definition.attributes if a.id == "speed")
             standing, walking, running = map(float, speed.recommended_values)
             assert 0.0 == standing < walking < running

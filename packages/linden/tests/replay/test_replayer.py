@@ -14,12 +14,12 @@ from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.replay.file.packets import RecordingError
 from linden.replay.file.read import Recording
 from linden.replay.file.track import track_of
-from linden.replay.replayer import Plan
+from linden.replay.replayer import ReplayPlan
 from linden.simulation.doors import Door
 from linden.world import World
 
 FRAMES = 30
-ALL = Plan(start_s=0.0, duration_s=0.0, follow_id=0, offset=Transform(), replay_sensors=False)
+ALL = ReplayPlan(start_s=0.0, duration_s=0.0, follow_id=0, offset=Transform(), replay_sensors=False)
 
 
 @pytest.fixture(scope="module")
@@ -79,11 +79,11 @@ def light(simulation: World) -> bytes:
     return b"".join(row[name].tobytes() for name in ("frozen", "state", "elapsed_time"))
 
 
-def start(simulation: World, path: Path, plan: Plan = ALL) -> None:
+def start(simulation: World, path: Path, plan: ReplayPlan = ALL) -> None:
     simulation.replayer.start(simulation, track_of(Recording(path)), plan)
 
 
-def fresh(recorded: Recorded, plan: Plan = ALL) -> World:
+def fresh(recorded: Recorded, plan: ReplayPlan = ALL) -> World:
     simulation = World(recorded.map)
     start(simulation, recorded.path, plan)
     return simulation

@@ -16,7 +16,7 @@ from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh import standing, things
 from linden.scenery.map_mesh_cache import keep_standing, standing_of
 from linden.scenery.mesh import NO_OBJECT, LampOf, Material, Mesh, join
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 from linden.scenery.scene.south_linden import home
 from linden.scenery.streets.junction_floors import floors
 from linden.scenery.streets.road import kerbs, surface
@@ -29,7 +29,13 @@ from opendrive_texts import signal, street_through_junction
 
 STREET = street_through_junction(signals=signal("7", 30.0, -5.0, "1000001") + signal("8", 10.0, -5.0, "206"))
 HIGH_M = 1e6
-OVERHANG_M = {Kind.HOUSE: 1.6, Kind.TREE: 12.0, Kind.STREET_LAMP: 0.5, Kind.UTILITY_POLE: 1.2, Kind.SHELTER: 0.6}
+OVERHANG_M = {
+    ObjectKind.HOUSE: 1.6,
+    ObjectKind.TREE: 12.0,
+    ObjectKind.STREET_LAMP: 0.5,
+    ObjectKind.UTILITY_POLE: 1.2,
+    ObjectKind.SHELTER: 0.6,
+}
 """How far a thing may be seen beyond its boxes, where that is much: eaves and chimneys, crowns, cross-arms, benches."""
 SLIGHT_M = 0.3
 
@@ -74,7 +80,7 @@ def test_what_is_seen_of_a_box_lies_in_it_but_for_eaves_and_crowns(scene: Scene,
     rows = np.flatnonzero(mesh.faces["object"] != NO_OBJECT)
     boxes = scene.boxes[mesh.faces["object"][rows]]
     kinds = scene.things["kind"][boxes["thing"]]
-    beyond = np.array([OVERHANG_M.get(kind, SLIGHT_M) for kind in Kind])[kinds]
+    beyond = np.array([OVERHANG_M.get(kind, SLIGHT_M) for kind in ObjectKind])[kinds]
     cosine, sine = np.cos(boxes["yaw_rad"]), np.sin(boxes["yaw_rad"])
     for corner in range(3):
         away = mesh.vertices_m[mesh.triangles[rows, corner]] - boxes["centre"]
@@ -86,10 +92,10 @@ def test_what_is_seen_of_a_box_lies_in_it_but_for_eaves_and_crowns(scene: Scene,
 
 def test_a_house_s_ridge_is_its_box_s_top(scene: Scene, mesh: Mesh) -> None:
     roofs = np.flatnonzero(mesh.faces["material"] == Material.SHINGLES)
-    of_house = roofs[scene.things["kind"][scene.boxes["thing"][mesh.faces["object"][roofs]]] == Kind.HOUSE]
+    of_house = roofs[scene.things["kind"][scene.boxes["thing"][mesh.faces["object"][roofs]]] == ObjectKind.HOUSE]
     top = np.full(len(scene.boxes), -np.inf)
     np.maximum.at(top, mesh.faces["object"][of_house], mesh.vertices_m[mesh.triangles[of_house], 2].max(axis=1))
-    houses = np.flatnonzero(scene.things["kind"][scene.boxes["thing"]] == Kind.HOUSE)
+    houses = np.flatnonzero(scene.things["kind"][scene.boxes["thing"]] == ObjectKind.HOUSE)
     np.testing.assert_allclose(
         top[houses], scene.boxes["centre"][houses, 2] + scene.boxes["half"][houses, 2], atol=1e-3
     )

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import ActorState
 from linden.protocol.values.space import BoundingBox, Transform, Vector3D
@@ -13,7 +13,13 @@ from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal, Ac
 
 def add(table: ActorTable, *, parent_id: int = 0, slot: int = NO_BODY, x: float = 0.0) -> ActorRecord:
     record = ActorRecord(
-        table.next_id(), ActorDescription(0, "test"), Kind.OTHER, BoundingBox(), b"", parent_id=parent_id, slot=slot
+        table.next_id(),
+        ActorDescription(0, "test"),
+        BlueprintKind.OTHER,
+        BoundingBox(),
+        b"",
+        parent_id=parent_id,
+        slot=slot,
     )
     pose = Transform(Vector3D(x, 0.0, 0.0))
     table.add(record, pose, pose if parent_id else None)
@@ -133,7 +139,7 @@ def test_lamps_are_those_of_the_vehicles_that_are_there() -> None:
         table.remove(record.id, announce=False)
     cars = []
     for _ in range(3):
-        record = ActorRecord(table.next_id(), ActorDescription(0, "car"), Kind.VEHICLE, BoundingBox(), b"")
+        record = ActorRecord(table.next_id(), ActorDescription(0, "car"), BlueprintKind.VEHICLE, BoundingBox(), b"")
         table.add(record, Transform())
         cars.append(record.id)
         assert table.lamps() == [(car, 0) for car in cars]

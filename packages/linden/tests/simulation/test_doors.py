@@ -2,7 +2,7 @@
 
 import pytest
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType
@@ -13,7 +13,9 @@ from linden.simulation.doors import SIDE_DOORS, Door, Doors
 
 def vehicle(actor_id: int, *, has_doors: bool = True) -> ActorRecord:
     said = AttributeValue("has_dynamic_doors", AttributeType.BOOL, "true" if has_doors else "false")
-    return ActorRecord(actor_id, ActorDescription(0, "vehicle.some.car", (said,)), Kind.VEHICLE, BoundingBox(), b"")
+    return ActorRecord(
+        actor_id, ActorDescription(0, "vehicle.some.car", (said,)), BlueprintKind.VEHICLE, BoundingBox(), b""
+    )
 
 
 def test_a_door_is_open_until_it_is_closed() -> None:

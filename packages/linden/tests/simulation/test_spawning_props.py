@@ -2,7 +2,7 @@
 
 import pytest
 
-from linden.blueprints.library import BlueprintLibrary, Kind
+from linden.blueprints.library import BlueprintKind, BlueprintLibrary
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType
@@ -30,7 +30,7 @@ def test_what_is_heavy_or_rooted_stands_fast(name: str) -> None:
 
 def test_every_prop_has_a_mass() -> None:
     for blueprint in LIBRARY:
-        if blueprint.kind is Kind.PROP and blueprint.definition.id != MESH:
+        if blueprint.kind is BlueprintKind.PROP and blueprint.definition.id != MESH:
             assert made(blueprint.definition.id).mass_kg > 0.0
 
 

@@ -8,7 +8,7 @@ import pytest
 from linden.maps.facts import derive
 from linden.maps.library import GENERATED_MAP, LoadedMap
 from linden.protocol.values.enums import SemanticTag, TrafficLightState
-from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.objects import ObjectKind
 from linden.scenery.scene.posts import POST_HALF_WIDTH_M, POST_HEIGHT_M
 from linden.simulation.surroundings import scenery_of
 from linden.world import World
@@ -27,7 +27,7 @@ def test_every_light_and_sign_stands_on_a_post(street: LoadedMap) -> None:
     signals, scene, statics = scenery_of(street)
     posts = statics.tag == SemanticTag.POLES
     assert [actor.sign_id for actor in signals.actors] == ["7", "8"]
-    assert [Kind(kind) for kind in scene.things["kind"]] == [Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN]
+    assert [ObjectKind(kind) for kind in scene.things["kind"]] == [ObjectKind.TRAFFIC_LIGHT, ObjectKind.TRAFFIC_SIGN]
     np.testing.assert_allclose(statics.centre[posts, :2], [actor.transform.location[:2] for actor in signals.actors])
     np.testing.assert_allclose(statics.centre[posts, 2], PAVEMENT_M + 0.5 * POST_HEIGHT_M)
     np.testing.assert_allclose(statics.half[posts], [[POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M]] * 2)
@@ -66,5 +66,5 @@ def test_each_map_has_its_own(street: LoadedMap) -> None:
 def test_a_map_of_one_s_own_has_houses_where_there_is_room_but_what_a_client_sent_has_none(street: LoadedMap) -> None:
     own = scenery_of(replace(street, name="own")).scene
     assert len(street.lots) > 0
-    assert (own.things["kind"] == Kind.HOUSE).any()
-    assert not (scenery_of(street).scene.things["kind"] == Kind.HOUSE).any()
+    assert (own.things["kind"] == ObjectKind.HOUSE).any()
+    assert not (scenery_of(street).scene.things["kind"] == ObjectKind.HOUSE).any()

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from linden.protocol.values.enums import TrafficLightState
 from linden.traffic import cycle
-from linden.traffic.cycle import LightPlan, LightState
+from linden.traffic.cycle import CycleState, LightPlan
 
 RED, YELLOW, GREEN = TrafficLightState.RED, TrafficLightState.YELLOW, TrafficLightState.GREEN
 CROSSING = cycle.plan([[[0, 2], [1, 3]]])
 """One junction: lights 0 and 2 face each other, 1 and 3 cross."""
 
 
-def after(plan: LightPlan, steps: int, dt_s: float, state: LightState | None = None) -> LightState:
+def after(plan: LightPlan, steps: int, dt_s: float, state: CycleState | None = None) -> CycleState:
     state = cycle.initial(plan) if state is None else state
     for _ in range(steps):
         state = cycle.step(plan, state, dt_s)
@@ -114,7 +114,7 @@ def test_a_reset_begins_anew_and_keeps_times_and_freezing() -> None:
 
 def test_a_step_leaves_the_state_it_came_from_alone() -> None:
     before = after(CROSSING, 10, 1.0)
-    kept = LightState(*(column.copy() for column in before))
+    kept = CycleState(*(column.copy() for column in before))
     cycle.step(CROSSING, before, 1.0)
     for column, copy in zip(before, kept, strict=True):
         assert column.tolist() == copy.tolist()

@@ -5,20 +5,20 @@ from hypothesis import strategies as st
 
 from linden.protocol.values.enums import TrafficLightState as Light
 from linden.traffic import cycle
-from linden.traffic.cycle import LightState, restored
+from linden.traffic.cycle import CycleState, restored
 
 PLAN = cycle.plan([[[0, 2], [1]], [[3]], [[4], [5], [6, 7]]])
 ALL = np.arange(8)
 
 
-def after(seconds: float, step_s: float = 0.5) -> LightState:
+def after(seconds: float, step_s: float = 0.5) -> CycleState:
     state = cycle.initial(PLAN)
     for _ in range(round(seconds / step_s)):
         state = cycle.step(PLAN, state, step_s)
     return state
 
 
-def shown(state: LightState) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def shown(state: CycleState) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return state.colour, cycle.elapsed_s(PLAN, state), cycle.is_frozen(PLAN, state)
 
 

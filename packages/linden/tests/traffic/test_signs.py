@@ -9,7 +9,7 @@ from fleet import column
 from linden.maps.records import GIVE_WAY
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.space import BoundingBox, Rotation, Vector3D
-from linden.traffic.signs import CLEAR_S, STOP_S, Columns, SignWatch, sign_rules
+from linden.traffic.signs import CLEAR_S, STOP_S, BodyColumns, SignWatch, sign_rules
 from linden.traffic.trigger_volumes import trigger_grid
 
 RED, GREEN = int(TrafficLightState.RED), int(TrafficLightState.GREEN)
@@ -39,7 +39,7 @@ class Cars:
         box, half = np.tile([0.0, 0.0, 0.75], (count, 1)), np.tile([2.3, 1.0, 0.75], (count, 1))
         slots = np.arange(count, dtype=np.int32)
         ids = np.array(actor_ids or range(10, 10 + count), np.int32)
-        columns = Columns(*map(column, (position, rotation, box, half)))
+        columns = BodyColumns(*map(column, (position, rotation, box, half)))
         return self._watch.told(columns, slots, ids, now_s).tolist()
 
 

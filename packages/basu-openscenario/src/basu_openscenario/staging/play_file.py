@@ -15,7 +15,7 @@ from basu_openscenario.staging.bodies import middle_of, reference_of
 from basu_openscenario.staging.refusals import light_of
 
 if TYPE_CHECKING:
-    from basu.scenarios.stage import Body
+    from basu.scenarios.stage import ActorBox
     from basu_openscenario.playing.mover import Mover
     from basu_openscenario.playing.player import Player
 
@@ -113,7 +113,7 @@ class PlayFile(Action):
             velocity = (0.0, 0.0) if still else self._velocity(body, there)
             stage.move(name, *velocity, 0.0 if still else turn_rad / stage.step_s)
 
-    def _velocity(self, body: Body, there: Pose) -> tuple[float, float]:
+    def _velocity(self, body: ActorBox, there: Pose) -> tuple[float, float]:
         """Return the velocity that leads a body to a place within a frame."""
         return (there.x_m - body.x_m) / self.stage.step_s, (there.y_m - body.y_m) / self.stage.step_s
 

@@ -8,7 +8,7 @@ from basu_ros import autoware
 from basu_ros.agents.autoware_base import AutowareBase
 from basu_ros.agents.commands import REVERSE, Wanted, autoware_command
 from basu_ros.agents.lockstep import NODE
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 from basu_ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class AutowareAgent(AutowareBase):
 
     def new_node(self) -> RosNode:
         """Return a node on the domain of ``ROS_DOMAIN_ID``."""
-        return Node(NODE)
+        return Ros2Node(NODE)
 
     def topics(self) -> Sequence[Topic]:
         """Return Autoware's topics, and the route as a path for planners that take one."""

@@ -22,7 +22,7 @@ from basu_ros.agents.commands import Wanted, finite
 from basu_ros.agents.legs import Legs
 from basu_ros.agents.lockstep import NODE, is_answer
 from basu_ros.agents.ros1 import FIRST_S
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import CLOCK, Message, odometry_of, path_message, path_of
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class AutowareAiAgent(AutowareBase):
 
     first_s = FIRST_S
     slice_s = PACE_S
-    node: Node
+    node: Ros1Node
 
     def setup(self) -> None:
         """Publish the mission, and wait until an Autoware.AI appears."""
@@ -63,9 +63,9 @@ class AutowareAiAgent(AutowareBase):
         self._began_s = self._frame_began_s = time.monotonic()
         super().setup()
 
-    def new_node(self) -> Node:
+    def new_node(self) -> Ros1Node:
         """Return a node at the master that takes commands of any version."""
-        node = Node(NODE, in_lockstep=True)
+        node = Ros1Node(NODE, in_lockstep=True)
         node.listen(ai.COMMAND, any_version=True)
         return node
 

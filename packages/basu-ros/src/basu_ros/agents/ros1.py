@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu_ros.agents.lockstep import NODE, LockstepAgent
-from basu_ros.ros1 import Node
+from basu_ros.ros1 import Ros1Node
 
 if TYPE_CHECKING:
     from basu_ros.node import RosNode
@@ -20,4 +20,4 @@ class Ros1Agent(LockstepAgent):
 
     def new_node(self) -> RosNode:
         """Return a node at the master; nodes that start later take their time from ``/clock``."""
-        return Node(NODE, in_lockstep=True)
+        return Ros1Node(NODE, in_lockstep=True)

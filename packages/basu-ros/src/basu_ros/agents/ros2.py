@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu_ros.agents.lockstep import NODE, LockstepAgent
-from basu_ros.dds import Node
+from basu_ros.dds import Ros2Node
 
 if TYPE_CHECKING:
     from basu_ros.node import RosNode
@@ -16,4 +16,4 @@ class RosAgent(LockstepAgent):
 
     def new_node(self) -> RosNode:
         """Return a node on the domain of ``ROS_DOMAIN_ID``."""
-        return Node(NODE)
+        return Ros2Node(NODE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.agents.sight.actors import Kind
+from basu.agents.sight.actors import ActorKind
 from basu.records.motion import motion_of
 from basu_ros.frames import vector
 from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from basu.agents.sight import Other
     from basu_ros.types import Types
 
-TYPE_OF_KIND = {Kind.VEHICLE: "vehicle.", Kind.WALKER: "walker.", Kind.PROP: "static.prop."}
+TYPE_OF_KIND = {ActorKind.VEHICLE: "vehicle.", ActorKind.WALKER: "walker.", ActorKind.PROP: "static.prop."}
 """The beginning of a blueprint's id, which is all that an agent sees of it."""
 BRAKED = Control(brake=1.0)  # what the vehicle has before its first control
 

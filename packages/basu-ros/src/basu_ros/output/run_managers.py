@@ -8,14 +8,13 @@ from basu.extras import require
 from basu_ros.extras import CYCLONEDDS
 from basu_ros.output.bag_manager import BagManager
 from basu_ros.output.publish_manager import PublishManager
-from basu_ros.ros1 import Node as Ros1Node
-from basu_ros.ros1 import require_roscore
+from basu_ros.ros1 import Ros1Node, require_roscore
 from basu_ros.types import Generation
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import BaseManager
     from basu.options.drive import DriveOptions
-    from basu.running.outputs import Drive
+    from basu.running.outputs import ShownDrive
 
 
 def check(options: DriveOptions) -> None:
@@ -30,12 +29,12 @@ def check(options: DriveOptions) -> None:
         require_roscore()
 
 
-def managers(options: DriveOptions, drive: Drive) -> list[BaseManager]:
+def managers(options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
     """Return the managers of ``--ros2``, ``--ros1`` and ``--rosbag``."""
     found: list[BaseManager] = []
     live, say = drive.live, drive.say
     if options.ros2:
-        from basu_ros.dds import Node as Ros2Node  # noqa: PLC0415 - DDS, an extra that bags and ROS 1 do not need
+        from basu_ros.dds import Ros2Node  # noqa: PLC0415 - DDS, an extra that bags and ROS 1 do not need
 
         found.append(PublishManager(live, Ros2Node, say))
     if options.ros1:

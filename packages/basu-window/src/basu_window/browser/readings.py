@@ -56,7 +56,7 @@ class Inertial(NamedTuple):
     spin_degps: tuple[float, float, float]
 
 
-class Setting(NamedTuple):
+class DriveSetting(NamedTuple):
     """What stays the same for a while: where and in what the agent drives, in words."""
 
     town: str
@@ -70,7 +70,7 @@ class Readings(NamedTuple):
 
     vehicle: str
     driver: str
-    setting: Setting
+    setting: DriveSetting
     traffic: tuple[int, int]  # other vehicles and walkers in the world
     ticks_per_s: float  # of wall time
     real_time: float  # simulated seconds for each second of wall time
@@ -93,7 +93,7 @@ class Readings(NamedTuple):
 class Around(NamedTuple):
     """Data of the window itself for the readings."""
 
-    setting: Setting
+    setting: DriveSetting
     traffic: tuple[int, int]
     ticks_per_s: float
     nearby: tuple[tuple[str, float], ...]
@@ -214,9 +214,9 @@ def felt(ego: Ego) -> Inertial:
     return Inertial((ahead, right, ego.acceleration_z_mps2 + GRAVITY_MPS2), (roll, pitch, yaw))
 
 
-def setting_of(run: Run, live: Live, weather: carla.WeatherParameters) -> Setting:
+def setting_of(run: Run, live: Live, weather: carla.WeatherParameters) -> DriveSetting:
     """Return where and in what the agent drives, in words."""
-    return Setting(run.route.town, run.route.id, weather_words(weather), sensor_words(live.sensors.types))
+    return DriveSetting(run.route.town, run.route.id, weather_words(weather), sensor_words(live.sensors.types))
 
 
 def weather_words(weather: carla.WeatherParameters) -> str:

@@ -1,7 +1,7 @@
 """Which drives of a campaign are independent evidence: equal drives under several seeds count once.
 
-`Evidence` counts rows one by one while a campaign runs. `basu.campaigns.conclusions.distinct` filters a whole table of
-a finished one by the same columns; a test holds that both count alike.
+`AgentEvidence` counts rows one by one while a campaign runs. `basu.campaigns.conclusions.distinct` filters a whole
+table of a finished one by the same columns; a test holds that both count alike.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ OWN = frozenset({"number", "id", "seed", "records_bytes", *VOLATILE})  # columns
 DIGEST_BYTES = 16
 
 
-class Evidence:
+class AgentEvidence:
     """Judged drives and successes of each agent, without the repetitions of a drive under another seed."""
 
     def __init__(self) -> None:

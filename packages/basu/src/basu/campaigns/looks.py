@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.campaigns.evidence import Evidence
+from basu.campaigns.evidence import AgentEvidence
 from basu.intervals import wilson
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Looks:
         """Take the rule; without one no look ever stops a campaign. ``rows_of`` gives the rows of a complete block."""
         self._until, self._agents, self._confidence, self._rows_of = until, tuple(agents), confidence, rows_of
         self._complete: set[int] = set()
-        self._evidence = Evidence()
+        self._evidence = AgentEvidence()
         self._summed = 0  # blocks in the evidence
         self.stopped_after: int | None = None  # blocks; None while the question is open
 

@@ -23,7 +23,7 @@ from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.episode.failures import outcome_of
 from basu.errors import AgentError, SimulatorError, UserError
-from basu.jobs.job import After, Played, PlayerSpec
+from basu.jobs.job import After, JobOutcome, PlayerSpec
 from basu.metrics.registry import user_metrics
 from basu.options.run import RunOptions
 from basu.outcome import Status
@@ -114,7 +114,7 @@ class _Player:
         self._simulator, self._towns, self._scratch = simulator, Towns(simulator), scratch
         self._plans: dict[tuple[str, str, str, bool], Plan] = {}
 
-    def play(self, job: dict[str, Any]) -> Played:
+    def play(self, job: dict[str, Any]) -> JobOutcome:
         """Drive one job; whatever goes wrong becomes its result. The folder is packed where it is worth keeping."""
         began_s, before = time.perf_counter(), cost_of()
         try:
@@ -137,7 +137,7 @@ class _Player:
             "worker": os.getpid(),
         }
         sent = done.to_send()._replace(folder=None, packed=packed, cost=cost)
-        return Played(sent, _after(done.result.outcome.status, done.result.success.passed))
+        return JobOutcome(sent, _after(done.result.outcome.status, done.result.success.passed))
 
     def _is_kept(self, job: dict[str, Any], result: Result) -> bool:
         """Return whether a folder is a failure's, one of the sample, or of a worse drive than the command has seen."""

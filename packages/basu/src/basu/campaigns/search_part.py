@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from basu.campaigns.plan import CampaignPlan
     from basu.campaigns.search_space import Space
-    from basu.campaigns.settings import Estimate, Search, Seeds
+    from basu.campaigns.settings import EstimateSettings, Search, Seeds
     from basu.scenarios.playable import Playable
 
 SEARCH = "search"  # the folder of the searches' states
@@ -49,11 +49,11 @@ class SearchPart:
     weather: tuple[str, ...]
     seeds: Seeds
     search: Search | None
-    estimate: Estimate | None
+    estimate: EstimateSettings | None
     sizes: tuple[int, ...]  # of the rounds of each search
 
     @property
-    def settings(self) -> Search | Estimate:
+    def settings(self) -> Search | EstimateSettings:
         """The search's or the estimate's."""
         found = self.estimate if self.search is None else self.search
         assert found is not None, "the settings have one of them"

@@ -71,7 +71,7 @@ class Normal(Table):
     deviation: Annotated[float, Field(gt=0.0)]
 
 
-class Estimate(Table):
+class EstimateSettings(Table):
     """Weighted drives that estimate the probability of a rare failure, for each case and agent."""
 
     drives: Annotated[int, Field(ge=10, le=1_000_000)]  # in the estimate
@@ -102,7 +102,7 @@ class Drives(Table):
     sweep_seed: Annotated[int, Field(ge=0)] = 0
     grid: Annotated[int | None, Field(ge=2)] = None  # values of every number
     search: Search | None = None  # towards the boundary of failure
-    estimate: Estimate | None = None  # of the probability of failure
+    estimate: EstimateSettings | None = None  # of the probability of failure
     vary: tuple[str, ...] = ()  # the parameters to sample; empty: all
     weather: Weathers | None = None  # None: that of the campaign
     traffic: Traffics | None = None
@@ -298,6 +298,6 @@ _TABLES: dict[str, type[Table]] = {
     "seeds": Seeds,
     "traffic": OtherTraffic,
     "search": Search,
-    "estimate": Estimate,
+    "estimate": EstimateSettings,
     "drives": Drives,
 }

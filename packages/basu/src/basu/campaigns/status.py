@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE, read_campaign_document
 from basu.campaigns.drive_table import DRIVES, journal_rows, open_drives
-from basu.campaigns.evidence import Evidence
+from basu.campaigns.evidence import AgentEvidence
 from basu.files import read_json
 from basu.intervals import wilson
 from basu.running.folder_lock import is_locked
@@ -25,7 +25,7 @@ def status(folder: Path) -> str:
     document = read_campaign_document(folder)
     rows = _rows(folder)
     counts: Counter[tuple[str, str]] = Counter()
-    evidence = Evidence()
+    evidence = AgentEvidence()
     for row in rows.values():
         evidence.add(row)
         counts[row["agent"], "all"] += 1

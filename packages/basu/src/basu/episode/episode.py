@@ -23,7 +23,7 @@ from basu.errors import (
     UserError,
 )
 from basu.managers import Live
-from basu.managers.base_manager import BaseManager, CoSimulation, Driver, Frame, Run, WorldChanges
+from basu.managers.base_manager import BaseManager, CoSimulation, DriverState, Frame, Run, WorldChanges
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
@@ -126,7 +126,7 @@ class Episode:
         self.first_frame: int | None = None  # the server's number of the first recorded frame, likewise
         self._managers: _Managers | None = None
         self._run: Run | None = None
-        self._driver = Driver()
+        self._driver = DriverState()
         self._unrecorded: Observation | None = None  # a frame that waits for its control
 
     # -- the beginning
@@ -211,7 +211,7 @@ class Episode:
         assert run is not None, "it is prepared"
         assert ground is not None, "likewise"
         self.history = self.outcome = self.bug = self.agent_error = None
-        self._driver = Driver()
+        self._driver = DriverState()
         routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)

@@ -13,7 +13,7 @@ import socket
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import BasuError, UserError
-from basu.jobs.job import Died, Played, PlayerSpec, Ready, refusal, versions
+from basu.jobs.job import Died, JobOutcome, PlayerSpec, Ready, refusal, versions
 
 try:
     import ray
@@ -44,7 +44,7 @@ class _Remote:
             return refusal(error)
         return Ready(versions())
 
-    def play(self, data: Any) -> Played:  # noqa: ANN401 - plain data of a job
+    def play(self, data: Any) -> JobOutcome:  # noqa: ANN401 - plain data of a job
         """Play a job."""
         return self._play(data)
 

@@ -30,7 +30,7 @@ class After(enum.Enum):
     INTERRUPTED = "interrupted"  # the user interrupted it; nothing more is played
 
 
-class Played(NamedTuple):
+class JobOutcome(NamedTuple):
     """What came of a job."""
 
     value: Any
@@ -53,7 +53,7 @@ class Lost(NamedTuple):
     attempts: int
 
 
-Play = Callable[[Any], Played]
+Play = Callable[[Any], JobOutcome]
 
 
 class PlayerSpec(NamedTuple):
@@ -88,7 +88,7 @@ class Died(NamedTuple):
     sentence: str
 
 
-Answer = Ready | Played | Refused | Died
+Answer = Ready | JobOutcome | Refused | Died
 
 
 def versions() -> dict[str, str]:

@@ -7,7 +7,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from basu.errors import UserError
-from basu.jobs.job import After, Died, Done, Job, Lost, Played, Ready, Refused, raised, versions
+from basu.jobs.job import After, Died, Done, Job, JobOutcome, Lost, Ready, Refused, raised, versions
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence
@@ -135,7 +135,7 @@ class Pool(Generic[W]):
         else:
             yield from self._played(worker, answer)
 
-    def _played(self, worker: W, played: Played) -> Iterator[Done | Lost]:
+    def _played(self, worker: W, played: JobOutcome) -> Iterator[Done | Lost]:
         """Pass on what came of a job, or try it again."""
         duty = self._workers[worker]
         assert duty is not None, "only a worker with a job answers so"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu import client_threads
 from basu.errors import BasuError
-from basu.jobs.job import After, Died, Played, PlayerSpec, Ready, refusal, versions
+from basu.jobs.job import After, Died, JobOutcome, PlayerSpec, Ready, refusal, versions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,7 +123,7 @@ def work(connection: Connection) -> None:
             after = After.GO_ON
             while after is After.GO_ON:
                 (data,) = connection.recv()
-                played: Played = play(data)
+                played: JobOutcome = play(data)
                 connection.send(played)
                 after = played.after
     except BasuError as error:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from basu.managers.agents_manager import AgentsManager
-    from basu.managers.base_manager import Driver
+    from basu.managers.base_manager import DriverState
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.sensors_manager import SensorsManager
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Live(NamedTuple):
     """The managers of a run, for observers."""
 
-    agents: Driver | AgentsManager
+    agents: DriverState | AgentsManager
     sensors: SensorsManager
     routes: RoutesManager
     metrics: MetricsManager

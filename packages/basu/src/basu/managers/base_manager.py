@@ -1,4 +1,4 @@
-"""`BaseManager`; data of a run: `Run`, `Ego`, `Frame`, `Driver`; `WorldChanges`: what was set last."""
+"""`BaseManager`; data of a run: `Run`, `Ego`, `Frame`, `DriverState`; `WorldChanges`: what was set last."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
 
 
 @dataclass(slots=True)
-class Driver:
+class DriverState:
     """What drives: the last control, the agent's own answer, and whether a person gave the control.
 
     Before the first control, the brake is on.

@@ -17,7 +17,7 @@ from basu.records.history.model import NO_LIGHT
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.managers.base_manager import Driver, Frame, Run
+    from basu.managers.base_manager import DriverState, Frame, Run
     from basu.managers.routes_manager import RoutesManager
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores
@@ -33,7 +33,9 @@ class MetricsManager(BaseManager):
     For that one the client reads the whole map, which of Linden's takes it 0.4 s in every world that it has begun anew.
     """
 
-    def __init__(self, agents: Driver, routes: RoutesManager, scoring: Scoring, *, lane_invasions: bool = True) -> None:
+    def __init__(
+        self, agents: DriverState, routes: RoutesManager, scoring: Scoring, *, lane_invasions: bool = True
+    ) -> None:
         self._agents, self._routes, self._lane_invasions = agents, routes, lane_invasions
         self._so_far, self._looked_at_ticks = SoFar(scoring), 0
         self._recorder = Recorder()

@@ -120,7 +120,7 @@ SMALLEST_M = 0.15  # half size of a body with an empty box from the simulator
 OVERHEAD_M = 3.0  # a thing that begins so far above the road is driven under
 
 
-class _Shape(NamedTuple):
+class _ActorShape(NamedTuple):
     """What stays the same about an actor; its box's middle and half sizes in its own frame, m."""
 
     type_id: str
@@ -141,7 +141,7 @@ class Neighbours:
 
     def __init__(self, world: carla.World, ego_id: int) -> None:
         self._world, self._ego_id = world, ego_id
-        self._shapes: dict[int, _Shape] = {}
+        self._shapes: dict[int, _ActorShape] = {}
         self._motion = PlacedMotion()
         self._count = -1
         self._last: tuple[Frame | None, list[tuple[float, ...]]] = (None, [])
@@ -206,10 +206,10 @@ class Neighbours:
         return (tick, actor_id, x_m, y_m, at.z, yaw_rad, motion.velocity_x_mps, motion.velocity_y_mps)
 
 
-def _shape(actor: carla.Actor) -> _Shape:
+def _shape(actor: carla.Actor) -> _ActorShape:
     """The box of an actor."""
     box = actor.bounding_box
-    return _Shape(
+    return _ActorShape(
         type_id=actor.type_id,
         x_m=box.location.x,
         y_m=box.location.y,

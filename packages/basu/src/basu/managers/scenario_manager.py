@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from basu.managers.routes_manager import RoutesManager
     from basu.records.history import History
     from basu.routing import Route
-    from basu.scenarios.criteria.criterion import Thing
+    from basu.scenarios.criteria.criterion import StandingThing
     from basu.scenarios.playable import Playable
     from basu.scenarios.scenario import Composed, Scenario
     from basu.scenarios.stage import ActorSpec
@@ -62,7 +62,7 @@ class Playing:
     over_tick: int | None = None  # when it came to an end before its run did
     outcome: Outcome | None = None  # of that end
     error: ScenarioError | None = None  # why it could not be played to its end
-    things: tuple[Thing, ...] = ()
+    things: tuple[StandingThing, ...] = ()
 
     @property
     def triggered(self) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 
 from basu.metrics.infraction import Evidence, Incident, evidence, row_of
 from basu.metrics.json_schema import EVIDENCE, integer, listing, number, record
-from basu.metrics.registry import Drive, Metric, Moment, register
+from basu.metrics.registry import Drive, Metric, TimedMark, register
 from basu.metrics.stretches import chords, path_m, spans, stretches, total_m
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Takeovers(Metric):
         miles = found["miles_per_disengagement"]
         return [f"disengagements    {found['number']}, {miles:.2f} miles by the agent to each"]
 
-    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+    def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:  # noqa: ARG002 - of the record
         """Return the stretches in which a person drove."""
         return spans(history, history.frames["manual"].astype(np.bool_), "driven by hand", "manual")
 

@@ -39,7 +39,7 @@ class Column(NamedTuple):
     text: str
 
 
-class Moment(NamedTuple):
+class TimedMark(NamedTuple):
     """A mark or a stretch on the timeline."""
 
     begin_s: float
@@ -84,7 +84,7 @@ class Display(ABC):
         text = self.text(result)
         return [] if text is None else [Column(self.heading, text)]
 
-    def moments(self, result: JudgedRun, history: History) -> Sequence[Moment]:  # noqa: ARG002 - it need have none
+    def moments(self, result: JudgedRun, history: History) -> Sequence[TimedMark]:  # noqa: ARG002 - it need have none
         """Return what its row of the timeline has."""
         return ()
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun, Watcher
     from basu.metrics.scoring import Scoring
     from basu.records.history import History
-    from basu.routing import Control
+    from basu.routing import RouteControl
 
 STATES = ("red", "yellow", "green", "off", "unknown")  # the values of carla.TrafficLightState
 RED = 0
@@ -45,7 +45,7 @@ ZONE_END_M = 5.0  # a zone of a light that ends so near to a line of the route i
 class LightPassed:
     """What a light on the route showed when the vehicle passed it."""
 
-    light: Control
+    light: RouteControl
     tick: int  # in which the tail began to cross the line; where it was run, the first one on red
     front_state: str  # what it showed when the front bumper crossed
     state: str  # what it showed in ``tick``

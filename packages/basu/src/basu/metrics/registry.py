@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from basu.errors import UserError
 from basu.files import module_of
-from basu.metrics.display import NAME_WIDTH, Column, Display, JudgedRun, Moment, is_number, shown
+from basu.metrics.display import NAME_WIDTH, Column, Display, JudgedRun, TimedMark, is_number, shown
 from basu.metrics.json_schema import Schema, number
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from basu.outcome import Outcome
     from basu.records.history import History
 
-__all__ = ["NAME_WIDTH", "Column", "Display", "Drive", "JudgedRun", "Metric", "Moment", "Watcher", "shown"]
+__all__ = ["NAME_WIDTH", "Column", "Display", "Drive", "JudgedRun", "Metric", "TimedMark", "Watcher", "shown"]
 
 ENTRY_POINTS = "basu.metrics"
 _BUILT_IN: dict[str, Metric] = {}

@@ -9,7 +9,7 @@ import numpy as np
 
 from basu.metrics.json_schema import flag, integer, listing, mapping, number, record, text
 from basu.metrics.path_following import near_stop, path_following, serving
-from basu.metrics.registry import Drive, Metric, Moment, register
+from basu.metrics.registry import Drive, Metric, TimedMark, register
 from basu.metrics.stretches import spans
 
 if TYPE_CHECKING:
@@ -80,11 +80,11 @@ class Reported(Metric):
         invasions = [] if lanes is None else [f"{'lane invasions':<18}{lanes['total']} (reported, not scored)"]
         return [*invasions, f"{'driven':<18}{way:>8}"]
 
-    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+    def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:  # noqa: ARG002 - of the record
         """Return each lane invasion."""
         times_s = [(float(history.frames["t_s"][event.tick]), event) for event in history.lane_invasions]
         return [
-            Moment(t_s, None, f"{', '.join(event.markings)} at {t_s:.1f} s", "", "stroke") for t_s, event in times_s
+            TimedMark(t_s, None, f"{', '.join(event.markings)} at {t_s:.1f} s", "", "stroke") for t_s, event in times_s
         ]
 
     def series(self, value: Any) -> dict[str, Any]:  # noqa: ANN401 - as `schema` says
@@ -137,7 +137,7 @@ class ServiceStops(Metric):
         served = sum(stop["served"] for stop in stops)
         return [f"service stops     {served} of {len(stops)} served"] if stops else []
 
-    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the record
+    def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:  # noqa: ARG002 - of the record
         """Return the stretches at rest at each stop."""
         found = [
             span._replace(label=stop.id)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.records.history import History
-    from basu.routing import Control
+    from basu.routing import RouteControl
 
 LOOK_S = 5.0  # a lane that the ego has had for longer is its own; a convention
 REACTION_S, BRAKING_MPS2, TIME_GAP_S = 0.4, 3.0, 1.0  # UN Regulation No. 79, 5.6.4.7: t_B, a and t_G
@@ -154,7 +154,7 @@ def _braked_mps2(history: History, entry: int, before: int) -> float:
     return float((speed_mps[:-over] - speed_mps[over:]).max()) / (over * history.facts.step_s)
 
 
-class Junction(NamedTuple):
+class RouteJunction(NamedTuple):
     """The junction of the route that the ego is in; places along the route in m, directions in rad."""
 
     begin_m: float
@@ -166,8 +166,8 @@ class Junction(NamedTuple):
 class Entered(NamedTuple):
     """The ego's entry to a junction of its route."""
 
-    junction: Junction
-    line: Control | None  # the sign or light before it
+    junction: RouteJunction
+    line: RouteControl | None  # the sign or light before it
     tick: int
 
 
@@ -214,7 +214,7 @@ def _against(history: History, before: int, track: Track, entered: Entered) -> s
     return _passed_sign(entered.line, (before - entered.tick) * history.facts.step_s, other_mps)
 
 
-def _passed_sign(line: Control | None, since_s: float, other_mps: float) -> str | None:
+def _passed_sign(line: RouteControl | None, since_s: float, other_mps: float) -> str | None:
     """The words for an ego that passed a stop or yield sign not long ago."""
     if line is None or line.kind is ControlKind.TRAFFIC_LIGHT or since_s > LOOK_S:
         return None
@@ -222,7 +222,7 @@ def _passed_sign(line: Control | None, since_s: float, other_mps: float) -> str 
     return f"the ego did not yield at {name} to the other, which came at {other_mps:.1f} m/s"
 
 
-def _turned_left(history: History, before: int, junction: Junction, other_mps: float) -> str | None:
+def _turned_left(history: History, before: int, junction: RouteJunction, other_mps: float) -> str | None:
     """The words for an ego that turns left and no longer waits along its approach."""
     turned_rad = _turned_rad(float(history.frames["yaw_rad"][before]) - junction.approach_rad)
     if junction.turn_rad > LEFT_TURN_RAD or turned_rad > BEGUN_RAD:
@@ -230,7 +230,7 @@ def _turned_left(history: History, before: int, junction: Junction, other_mps: f
     return f"the ego turned left across the path of the other, which came towards it at {other_mps:.1f} m/s"
 
 
-def _junction(history: History, before: int) -> Junction | None:
+def _junction(history: History, before: int) -> RouteJunction | None:
     """The junction between the ego's bumpers, on its route."""
     route, vehicle = history.facts.route, history.facts.vehicle
     at_m = float(history.frames["route_s_m"][before])
@@ -244,10 +244,10 @@ def _junction(history: History, before: int) -> Junction | None:
     last = int(open_road[open_road > inside[0]][0]) if (open_road > inside[0]).any() else len(route.s_m) - 1
     approach_rad = float(route.yaw_rad[first])
     turn_rad = float(np.unwrap(route.yaw_rad[first : last + 1])[-1]) - approach_rad
-    return Junction(float(route.s_m[first]), float(route.s_m[last]), approach_rad, turn_rad)
+    return RouteJunction(float(route.s_m[first]), float(route.s_m[last]), approach_rad, turn_rad)
 
 
-def _line(history: History, junction: Junction) -> Control | None:
+def _line(history: History, junction: RouteJunction) -> RouteControl | None:
     """The sign or light that governs the entry to the junction: the last one near its beginning."""
     near = [
         control

@@ -15,7 +15,7 @@ from basu.errors import UserError
 from basu.files import read_json
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
-from basu.metrics.passengers.felt import STANDING, Place
+from basu.metrics.passengers.felt import STANDING, PassengerPlace
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2
 from basu.settings.option import Layer, Option, Settings, to_json
 
@@ -85,7 +85,7 @@ class Scoring(Settings):
         ),
     ] = field(default_factory=ComfortWeights)
     standing_place: Annotated[
-        Place,
+        PassengerPlace,
         Option(
             help="where passengers stand: forward, right and up from the vehicle's origin",
             group=SCORING,

@@ -52,7 +52,7 @@ class Excess:
         )
 
 
-class Episode:
+class EpisodeFinder:
     """Finds episodes frame by frame: one begins above the tolerance, and ends back at the limit.
 
     It is cut into pieces: one ends where `SHARE_M` was gained on the limit. ``pieces`` are those of the open episode.
@@ -94,7 +94,7 @@ def episodes(
     speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64], tolerance_mps: float, step_s: float
 ) -> list[list[Excess]]:
     """The pieces of each episode that is long enough to count."""
-    episode, found = Episode(tolerance_mps, step_s), []
+    episode, found = EpisodeFinder(tolerance_mps, step_s), []
     for tick, (speed, limit) in enumerate(zip(speed_mps.tolist(), limit_mps.tolist(), strict=True)):
         found.append(episode.step(tick, speed, limit))
     return [pieces for pieces in (*found, episode.counted()) if pieces]
@@ -122,12 +122,12 @@ class SpeedingSoFar:
         self.pending: list[Evidence] = []
         self._tolerance_mps = tolerance_mps
         self._seen = 0  # frames looked at
-        self._episode: Episode | None = None
+        self._episode: EpisodeFinder | None = None
 
     def look(self, window: Callable[[int], History]) -> None:
         """Take in the frames that are new."""
         history = window(self._seen)
-        episode = self._episode = self._episode or Episode(self._tolerance_mps, history.facts.step_s)
+        episode = self._episode = self._episode or EpisodeFinder(self._tolerance_mps, history.facts.step_s)
         speeds, limits = history.speed_mps().tolist(), limits_mps(history).tolist()
         for tick, (speed_mps, limit_mps) in enumerate(zip(speeds, limits, strict=True), self._seen):
             self.settled += _evidence(window, episode.step(tick, speed_mps, limit_mps))

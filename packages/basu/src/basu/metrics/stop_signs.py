@@ -17,7 +17,7 @@ import numpy as np
 from basu.metrics.incremental import ControlsWatcher, away_from
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
-from basu.metrics.registry import Column, Drive, Metric, Moment, register
+from basu.metrics.registry import Column, Drive, Metric, TimedMark, register
 from basu.metrics.validity import counts_at
 from basu.routing import ControlKind
 from basu.thresholds import AT_REST_MPS
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun, Watcher
     from basu.metrics.scoring import Scoring
     from basu.records.history import History
-    from basu.routing import Control
+    from basu.routing import RouteControl
 
 ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
 
@@ -37,7 +37,7 @@ ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
 class SignPassed:
     """What the vehicle did at one stop sign."""
 
-    sign: Control
+    sign: RouteControl
     lowest_speed_mps: float  # in the approach zone
     front_to_line_m: float  # at the lowest speed, from the front bumper to the line, negative beyond it
     tick: int  # of the crossing
@@ -161,10 +161,10 @@ class StopSigns(Metric):
         obeyed = f"{stopped} of {len(signs)} obeyed"
         return [f"stop signs        {obeyed}; slowest speed before any line at most {slowest:.3f} m/s"]
 
-    def moments(self, result: JudgedRun, history: History) -> list[Moment]:  # noqa: ARG002 - of the value
+    def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:  # noqa: ARG002 - of the value
         """Return each sign that was passed: a tick where the vehicle stopped, a cross where it did not."""
         return [
-            Moment(
+            TimedMark(
                 sign["t_s"],
                 None,
                 f"stop sign {sign['id']} {'stopped at' if sign['stopped'] else 'run'}, passed at {sign['t_s']:.1f} s, "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.metrics.display import Moment
+from basu.metrics.display import TimedMark
 from basu.metrics.infraction import Evidence, Incident, evidence, row_of
 from basu.metrics.json_schema import EVIDENCE, Schema, listing, number, record
 from basu.records.structured import StructuredArray
@@ -36,11 +36,11 @@ def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(first, end) for first, end in edges.reshape(-1, 2).tolist()]
 
 
-def spans(history: History, holds: NDArray[np.bool_], what: str, style: str) -> list[Moment]:
+def spans(history: History, holds: NDArray[np.bool_], what: str, style: str) -> list[TimedMark]:
     """Return each stretch in which ``holds`` (T,) is true, for the timeline; ``what`` says what lasted."""
     t_s = history.frames["t_s"]
     found = [(float(t_s[first]), float(t_s[end - 1])) for first, end in stretches(holds)]
-    return [Moment(b, e, f"{what} from {b:.1f} s to {e:.1f} s", style=style) for b, e in found]
+    return [TimedMark(b, e, f"{what} from {b:.1f} s to {e:.1f} s", style=style) for b, e in found]
 
 
 def chords(points_m: NDArray[np.float64]) -> Chords:

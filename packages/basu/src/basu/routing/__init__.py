@@ -1,6 +1,6 @@
 """From a route file to a path along the lanes: read it, join its points, find the signs on the way."""
 
 from basu.routing.plan import plan
-from basu.routing.planned_route import Control, ControlKind, Route, Stop
+from basu.routing.planned_route import ControlKind, Route, RouteControl, Stop
 
-__all__ = ["Control", "ControlKind", "Route", "Stop", "plan"]
+__all__ = ["ControlKind", "Route", "RouteControl", "Stop", "plan"]

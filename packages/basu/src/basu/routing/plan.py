@@ -11,7 +11,7 @@ import numpy as np
 from basu.errors import UserError
 from basu.routing import lane_graph
 from basu.routing.join import Piece, join
-from basu.routing.planned_route import Control, ControlKind, Route, Stop
+from basu.routing.planned_route import ControlKind, Route, RouteControl, Stop
 
 if TYPE_CHECKING:
     import carla
@@ -40,7 +40,7 @@ def controls_on(
     s_m: NDArray[np.float64],
     points_m: NDArray[np.float64],
     yaw_rad: NDArray[np.float64],
-) -> tuple[Control, ...]:
+) -> tuple[RouteControl, ...]:
     """Controls in the order in which the route meets them; one that is met twice appears twice.
 
     All arrays describe the route's N points; ``road_s_m`` is the place along each point's road, ``landmarks`` are
@@ -61,7 +61,7 @@ def controls_on(
             at += first
             ahead_m = (landmark.s - float(road_s_m[at])) * (1.0 if lane < 0 else -1.0)
             found.append(
-                Control(
+                RouteControl(
                     kind=KIND_OF_TYPE[landmark.type],
                     landmark_id=landmark.id,
                     s_m=float(s_m[at]) + ahead_m,
@@ -74,9 +74,9 @@ def controls_on(
     return _lines(sorted(found, key=lambda control: (control.s_m, control.landmark_id)))
 
 
-def _lines(found: list[Control]) -> tuple[Control, ...]:
+def _lines(found: list[RouteControl]) -> tuple[RouteControl, ...]:
     """Controls without references on connecting roads to a signal with its own line a few metres before them."""
-    kept: list[Control] = []
+    kept: list[RouteControl] = []
     for control in found:
         again = any(
             control.landmark_id == other.landmark_id and control.s_m - other.s_m < SAME_LINE_M for other in kept[-4:]

@@ -25,7 +25,7 @@ class ControlKind(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Control:
+class RouteControl:
     """A stop sign, yield sign or traffic light that governs the route's lane."""
 
     kind: ControlKind  # stop sign, yield sign or traffic light
@@ -65,7 +65,7 @@ class Route:
     road_id: NDArray[np.int64]  # (N,) OpenDRIVE road
     lane_id: NDArray[np.int64]  # (N,) OpenDRIVE lane; its sign gives the side of the road
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
-    controls: tuple[Control, ...] = ()  # likewise
+    controls: tuple[RouteControl, ...] = ()  # likewise
     timetable: Timetable | None = None  # when it is due at its stops; None without a timetable
     waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,)
 

@@ -11,7 +11,7 @@ from basu.managers.sensors_manager import SensorsManager
 from basu.output.progress import ProgressBar
 from basu.records.recording_files import LOG_FILE
 from basu.running.drive import drive
-from basu.running.outputs import Drive, output_managers
+from basu.running.outputs import ShownDrive, output_managers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -103,4 +103,4 @@ class AgentDrive:
             self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
             found.append(self._recording)
         say = (lambda _: None) if self._quiet else print
-        return [*found, *output_managers(self._options, Drive(live, self._agent, say))]
+        return [*found, *output_managers(self._options, ShownDrive(live, self._agent, say))]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
     from basu.routing.route_file import RoutePoint
-    from basu.running.preparation import Job, Plan
+    from basu.running.preparation import Plan, RequestedRun
     from basu.simulator import Simulator
 
 
@@ -46,7 +46,7 @@ class Session:
     pictures: bool = True  # whether each run gets its picture and its report
 
 
-def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> DriveDone:
+def run_one(session: Session, agents: AgentsManager, job: RequestedRun, *, output: Path, name: str) -> DriveDone:
     """Make one run and write its folder as a draft for ``name`` in ``output``.
 
     Raises:
@@ -125,7 +125,7 @@ def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
         raise
 
 
-def next_agents(session: Session, job: Job) -> AgentsManager:
+def next_agents(session: Session, job: RequestedRun) -> AgentsManager:
     """Return the agent of a further run, under the conditions of the first: its ``config()`` cannot change them.
 
     Raises:
@@ -136,7 +136,9 @@ def next_agents(session: Session, job: Job) -> AgentsManager:
     return agents
 
 
-def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> DriveDone:
+def run_counted(
+    session: Session, agents: AgentsManager | None, job: RequestedRun, *, output: Path, name: str
+) -> DriveDone:
     """Make one run of a series as `run_one` does; an agent that fails before its drive has had its run.
 
     Raises:
@@ -178,7 +180,9 @@ def _rest_of(draft: Path) -> str:
     return "nothing of the run was written"
 
 
-def _spec(session: Session, agents: AgentsManager, job: Job, points: tuple[RoutePoint, ...] | None) -> EpisodeSpec:
+def _spec(
+    session: Session, agents: AgentsManager, job: RequestedRun, points: tuple[RoutePoint, ...] | None
+) -> EpisodeSpec:
     """Return the episode of a job; ``points`` are a route of the agent's own, without the scenarios of the file's."""
     description, waiting = job.description, job.scenarios
     if points is not None:

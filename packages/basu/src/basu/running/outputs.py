@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from basu.options.drive import DriveOptions
 
 
-class Drive(NamedTuple):
+class ShownDrive(NamedTuple):
     """The drive that an output shows."""
 
     live: Live
@@ -32,7 +32,7 @@ class Output(Protocol):
             UserError: something is missing.
         """
 
-    def managers(self, options: DriveOptions, drive: Drive) -> list[BaseManager]:
+    def managers(self, options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
         """Return the managers that observe a drive with these options; none where it is not to be shown."""
 
 
@@ -74,7 +74,7 @@ def check_outputs(options: DriveOptions) -> None:
         output.check(options)
 
 
-def output_managers(options: DriveOptions, drive: Drive) -> list[BaseManager]:
+def output_managers(options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
     """Return the managers of all outputs, in their order: window, viewer, ROS, then those of other projects."""
     outputs = _outputs(options, has_person=drive.live.agents.person is not None)
     return [manager for output in outputs for manager in output.managers(options, drive)]

@@ -43,7 +43,7 @@ class SensorSet(NamedTuple):
     source: str
 
 
-class Job(NamedTuple):
+class RequestedRun(NamedTuple):
     """One of the requested runs."""
 
     number: int  # from 0
@@ -61,7 +61,7 @@ class Plan:
     loaded: FoundAgent
     agents: AgentsManager  # for the first run; each further run makes its own
     sensors: SensorSet
-    jobs: tuple[Job, ...]
+    jobs: tuple[RequestedRun, ...]
 
 
 @contextlib.contextmanager
@@ -114,7 +114,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
     routes = _chosen(read_routes(path), config, options)
     waiting = {route.id: _scenarios(route, options) for route in routes}
     jobs = [
-        Job(
+        RequestedRun(
             number,
             description.as_own() if is_own else description,
             _label(description, len(routes)) + (OWN_ROUTE if is_own else ""),

@@ -9,7 +9,7 @@ from basu.episode import Towns
 from basu.episode.failures import outcome_of
 from basu.episode.world import check_towns
 from basu.errors import AgentError, SimulatorError, UserError
-from basu.jobs.job import After, Played, PlayerSpec
+from basu.jobs.job import After, JobOutcome, PlayerSpec
 from basu.metrics.registry import user_metrics
 from basu.outcome import Status
 from basu.running.drive import not_begun
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
     from basu.running.drive import DriveDone
-    from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
+    from basu.running.preparation import RequestedRun as RunJob
     from basu.simulator import Simulator
 
 ENDING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
@@ -77,7 +77,7 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
         session = Session(options, scoring, plan, simulator, towns, quiet=here is None or here.quiet)
         first = [] if here is None else [plan.agents]
 
-        def play(data: RunJobData) -> Played:
+        def play(data: RunJobData) -> JobOutcome:
             job = plan.jobs[data.number]
             # the agent that was made to be asked for its wishes drives the first run; it was made with its seed
             agents = first.pop() if first and job.seed == options.seed else None
@@ -88,9 +88,11 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
                 if here is not None:
                     raise
                 again = isinstance(error, SimulatorError)  # without a simulator it is tried again
-                return Played(not_begun(outcome_of(error, simulator.why_gone)), After.AGAIN if again else After.GO_ON)
+                return JobOutcome(
+                    not_begun(outcome_of(error, simulator.why_gone)), After.AGAIN if again else After.GO_ON
+                )
             ends = done.result.outcome.status in ENDING
-            return Played(done.to_send() if here is None else done, After.FRESH if ends else After.GO_ON)
+            return JobOutcome(done.to_send() if here is None else done, After.FRESH if ends else After.GO_ON)
 
         yield play
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
     from basu.running.drive import DriveDone
-    from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
+    from basu.running.preparation import RequestedRun as RunJob
 
 BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no further run would fare better
 

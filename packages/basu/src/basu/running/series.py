@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from basu.running.drive import DriveDone
 from basu.running.batch import Batch, changes, counts
 from basu.running.exit_code import exit_code
-from basu.running.preparation import Job, Plan
+from basu.running.preparation import Plan, RequestedRun
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
 
@@ -48,7 +48,7 @@ SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
 class Series(Batch):
     """The series in a folder, with its list and totals. ``open_series`` makes one."""
 
-    def __init__(self, folder: Path, document: dict[str, Any], jobs: Mapping[int, Job], agent: str) -> None:
+    def __init__(self, folder: Path, document: dict[str, Any], jobs: Mapping[int, RequestedRun], agent: str) -> None:
         """Take up a series of ``jobs``, by number."""
         super().__init__(folder, {number: _name(job, agent) for number, job in jobs.items()})
         self._document, self._jobs = document, jobs
@@ -154,7 +154,9 @@ def _condition(value: Any) -> Any:  # noqa: ANN401 - values of any option
     return [_condition(each) for each in value] if isinstance(value, list | tuple) else to_json(value)
 
 
-def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], agent: str, *, resume: bool) -> Series:
+def open_series(
+    folder: Path, given: Mapping[str, Any], jobs: tuple[RequestedRun, ...], agent: str, *, resume: bool
+) -> Series:
     """Begin the series in ``folder``, or go on with it; ``given`` is all that its results depend on, by name.
 
     Raises:
@@ -193,7 +195,7 @@ def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], a
     return series
 
 
-def _name(job: Job, agent: str) -> str:
+def _name(job: RequestedRun, agent: str) -> str:
     """What the folder of a run is called: in the order of the runs, as long as there are less than ten thousand."""
     return f"{job.number:04d}-{plain(agent)}-{plain(job.label)}-{job.repetition}"
 

@@ -131,7 +131,7 @@ KEYS = "data/human_session.json"  # of the human; it states the source of the ke
 ROUTE, VEHICLE, WEATHER = "routes/linden_short.xml", "vehicle.tesla.model3", "ClearSunset"
 
 
-class Case(NamedTuple):
+class ExperimentCase(NamedTuple):
     """A row of the table: its name there, and what drives here."""
 
     row: str
@@ -140,10 +140,10 @@ class Case(NamedTuple):
 
 
 CASES = (
-    Case("basic", "basic"),
-    Case("behavioral", "deviating"),  # behavioral up to the place where it leaves the path on purpose
-    Case("forward", "forward"),
-    Case("human", "human", keys=KEYS),
+    ExperimentCase("basic", "basic"),
+    ExperimentCase("behavioral", "deviating"),  # behavioral up to the place where it leaves the path on purpose
+    ExperimentCase("forward", "forward"),
+    ExperimentCase("human", "human", keys=KEYS),
 )
 
 
@@ -220,7 +220,7 @@ def _compared(folder: Path, folders: Mapping[str, Path], ours: Mapping[str, Meas
     return explained, str(compare([folders[case.row] for case in CASES], folder, in_page(PRINTED, ours, explained)))
 
 
-def _drive(case: Case, options: RunOptions, simulator: Simulator, towns: Towns) -> Path:
+def _drive(case: ExperimentCase, options: RunOptions, simulator: Simulator, towns: Towns) -> Path:
     """Drive one of the four runs in the simulator of all, and return its folder."""
     wanted = replace(options, agent=case.agent, keys=case.keys, routes=ROUTE, vehicle=VEHICLE, weather=WEATHER)
     plan = prepare(wanted)

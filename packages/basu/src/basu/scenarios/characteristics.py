@@ -66,7 +66,7 @@ class Alignment(enum.Enum):
     CURVE = "curve"
 
 
-class Junction(enum.Enum):
+class JunctionRelation(enum.Enum):
     """Relation to a junction."""
 
     NONE = "none"
@@ -75,7 +75,7 @@ class Junction(enum.Enum):
     ROUNDABOUT = "roundabout"
 
 
-class Control(enum.Enum):
+class TrafficControl(enum.Enum):
     """Traffic control device on the ego's way at the conflict."""
 
     NONE = "none"
@@ -98,8 +98,8 @@ class Characteristics:
     lighting: Lighting = Lighting.DAYLIGHT
     surface: Surface = Surface.DRY
     alignment: Alignment = Alignment.STRAIGHT
-    junction: Junction = Junction.NONE
-    control: Control = Control.NONE
+    junction: JunctionRelation = JunctionRelation.NONE
+    control: TrafficControl = TrafficControl.NONE
     obstruction: Obstruction = Obstruction.NONE
     partner: Partner = Partner.VEHICLE
 

@@ -29,7 +29,7 @@ class Pose(NamedTuple):
     yaw_rad: float = 0.0
 
 
-class Body(NamedTuple):
+class ActorBox(NamedTuple):
     """The box of an actor in this frame; the place is the box's middle."""
 
     x_m: float
@@ -97,7 +97,7 @@ class Stage(Protocol):
         """Simulated time since the scenario began."""
 
     @property
-    def ego(self) -> Body:
+    def ego(self) -> ActorBox:
         """The vehicle under test."""
 
     @property
@@ -108,7 +108,7 @@ class Stage(Protocol):
     def ego_contacts(self) -> frozenset[str]:
         """The actors that the ego has touched since the scenario began: roles, or blueprint ids without a role."""
 
-    def body(self, name: str) -> Body:
+    def body(self, name: str) -> ActorBox:
         """An actor of the scenario; ``EGO`` for the vehicle under test."""
 
     def is_there(self, name: str) -> bool:

@@ -63,7 +63,7 @@ ELSEWHERE = {
 }
 
 
-class Collision(NamedTuple):
+class EgoContact(NamedTuple):
     """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.fault`)."""
 
     t_s: float
@@ -83,7 +83,7 @@ class Judged(NamedTuple):
     margins: dict[str, float | None]  # how narrowly: distance_m, ttc_s, pet_s
     outcome: Outcome  # of the run
     assessment: Assessment | None  # None where nothing was recorded
-    collisions: tuple[Collision, ...] = ()
+    collisions: tuple[EgoContact, ...] = ()
 
     @property
     def fault(self) -> Fault:
@@ -125,7 +125,7 @@ def judge(
     return Judged(verdict, message, judgements, margins_of(judgements), outcome, assessment, _collisions(played))
 
 
-def _collisions(played: Played) -> tuple[Collision, ...]:
+def _collisions(played: Played) -> tuple[EgoContact, ...]:
     """Every contact of the drive, with the responsibility for it."""
     history = played.history
     speed_mps, t_s = history.speed_mps(), history.frames["t_s"]
@@ -133,7 +133,7 @@ def _collisions(played: Played) -> tuple[Collision, ...]:
     for event in beginnings(history, {}):
         said = responsibility(history, event)
         found.append(
-            Collision(
+            EgoContact(
                 t_s=float(t_s[event.tick]),
                 other=played.roles.get(event.other_id, event.other_type),
                 speed_mps=float(speed_mps[max(0, event.tick - 1)]),

@@ -13,7 +13,7 @@ from basu.metrics.boxes import boxes, touching
 from basu.routing import Route
 from basu.scenarios.paths import Path
 from basu.scenarios.place import Place
-from basu.scenarios.stage import EGO, Body, Controls, Door, Pose
+from basu.scenarios.stage import EGO, ActorBox, Controls, Door, Pose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -84,7 +84,7 @@ class _Led(NamedTuple):
     slows_mps2: float = 0.0  # of a braked or rolling body
 
 
-class Command(NamedTuple):
+class StageCommand(NamedTuple):
     """Something that was done to the world besides moving: for tests to ask about."""
 
     time_s: float
@@ -113,7 +113,7 @@ class OfflineStage:
     ) -> None:
         self.step_s, self.route, self.carla_map = step_s, place.route, place.carla_map
         self.rng = random.Random(seed)  # noqa: S311 - chance that can be had again
-        self.commands: list[Command] = []
+        self.commands: list[StageCommand] = []
         self._driver, self._turn_share = driver, turn_share
         self._way = Path.through(place.route.points_m)
         self._ticks, self._ego_s_m, self._ego_half_m = 0, 0.0, ego_half_m
@@ -131,7 +131,7 @@ class OfflineStage:
         return self._ticks * self.step_s
 
     @property
-    def ego(self) -> Body:
+    def ego(self) -> ActorBox:
         """The vehicle under test."""
         return self._bodies[EGO]
 
@@ -150,7 +150,7 @@ class OfflineStage:
         """All bodies present, the ego last."""
         return tuple(self._bodies)
 
-    def body(self, name: str) -> Body:
+    def body(self, name: str) -> ActorBox:
         """A body in this frame."""
         try:
             return self._bodies[name]
@@ -245,7 +245,7 @@ class OfflineStage:
         self._ticks += 1
         self._touched |= {name for name in self._led if self._touches(self._bodies[name])}
 
-    def _moved(self, body: Body, led: _Led) -> tuple[Body, _Led]:
+    def _moved(self, body: ActorBox, led: _Led) -> tuple[ActorBox, _Led]:
         """A body a frame later, and its command from then on."""
         speed_mps = math.hypot(led.velocity_x_mps, led.velocity_y_mps)
         if led.slows_mps2 and speed_mps:
@@ -260,11 +260,11 @@ class OfflineStage:
             velocity_y_mps=led.velocity_y_mps,
         ), led
 
-    def _ego_body(self, speed_mps: float) -> Body:
+    def _ego_body(self, speed_mps: float) -> ActorBox:
         at = self._way.at(self._ego_s_m)
-        return Body(*at, speed_mps * math.cos(at.yaw_rad), speed_mps * math.sin(at.yaw_rad), *self._ego_half_m)
+        return ActorBox(*at, speed_mps * math.cos(at.yaw_rad), speed_mps * math.sin(at.yaw_rad), *self._ego_half_m)
 
-    def _touches(self, other: Body) -> bool:
+    def _touches(self, other: ActorBox) -> bool:
         reach_m = sum(body.half_length_m + body.half_width_m for body in (self.ego, other))
         if math.dist(self.ego[:2], other[:2]) > reach_m:
             return False
@@ -280,11 +280,11 @@ class OfflineStage:
         return bool(touching(ours, theirs)[0])
 
     def _note(self, what: str, *details: object) -> None:
-        self.commands.append(Command(self.time_s, what, details))
+        self.commands.append(StageCommand(self.time_s, what, details))
 
 
-def _entering(spec: ActorSpec) -> Body:
+def _entering(spec: ActorSpec) -> ActorBox:
     """An actor at its entrance."""
     half_m = next(size[1:] for size in SIZES_M if spec.blueprint.startswith(size[0]))
     yaw_rad = spec.pose.yaw_rad
-    return Body(*spec.pose, spec.speed_mps * math.cos(yaw_rad), spec.speed_mps * math.sin(yaw_rad), *half_m)
+    return ActorBox(*spec.pose, spec.speed_mps * math.cos(yaw_rad), spec.speed_mps * math.sin(yaw_rad), *half_m)

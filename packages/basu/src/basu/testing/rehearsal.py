@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.scenarios.scenario import Composed, Scenario
-    from basu.scenarios.stage import Body
-    from basu.testing.offline_stage import Command
+    from basu.scenarios.stage import ActorBox
+    from basu.testing.offline_stage import StageCommand
 
 
 Driver = Callable[[OfflineStage], float]
@@ -85,7 +85,7 @@ class Rehearsal:
     times_s: NDArray[np.float64]  # (T,) of the frames
     ego_s_m: NDArray[np.float64]  # (T,) along its route
     trails: dict[str, NDArray[np.float64]]  # by role (T, 4): x, y in m, yaw in rad, speed in m/s; nan while not there
-    commands: tuple[Command, ...]
+    commands: tuple[StageCommand, ...]
 
     @property
     def over(self) -> bool:
@@ -115,7 +115,7 @@ def rehearse(
     set_on(tree, stage)
     phases_s: dict[str, float] = {}
     contacts_s: dict[str, float] = {}
-    frames: list[tuple[float, float, dict[str, Body]]] = []
+    frames: list[tuple[float, float, dict[str, ActorBox]]] = []
     for _ in range(1 + round((until_s or scenario.timeout_s) / step_s)):
         frames.append((stage.time_s, stage.ego_s_m, {name: stage.body(name) for name in stage.names}))
         tree.root.tick()
@@ -138,11 +138,11 @@ def rehearse(
     )
 
 
-def _trails(frames: list[dict[str, Body]]) -> dict[str, NDArray[np.float64]]:
+def _trails(frames: list[dict[str, ActorBox]]) -> dict[str, NDArray[np.float64]]:
     """By role, a row a frame."""
     away = (np.nan,) * 4
 
-    def row(body: Body | None) -> tuple[float, ...]:
+    def row(body: ActorBox | None) -> tuple[float, ...]:
         return away if body is None else (body.x_m, body.y_m, body.yaw_rad, body.speed_mps)
 
     return {name: np.array([row(frame.get(name)) for frame in frames]) for name in frames[0]}

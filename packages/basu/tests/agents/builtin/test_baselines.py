@@ -10,9 +10,9 @@ import pytest
 from basu.agents.builtin.baselines import CREEP_MPS, BlindAgent, CreeperAgent, StandingAgent
 from basu.agents.builtin.basic import BasicAgent
 from basu.agents.builtin.driving.controllers import HOLD_BRAKE
-from basu.agents.sight import Kind, Other, Sight
+from basu.agents.sight import ActorKind, Other, Sight
 
-OTHERS = [Other(2, Kind.VEHICLE, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 1.25)]
+OTHERS = [Other(2, ActorKind.VEHICLE, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 1.25)]
 
 
 class Recorder:

@@ -8,7 +8,7 @@ from typing import Any
 import carla
 import pytest
 
-from basu.agents.sight import MEMORY_S, RADIUS_M, Kind, Knowledge, Other, Sight
+from basu.agents.sight import MEMORY_S, RADIUS_M, ActorKind, Knowledge, Other, Sight
 from basu.agents.sight.actors import LOOK_AGAIN_TICKS, SMALLEST_M
 from basu.agents.sight.line_of_sight import (
     FAR_TICKS,
@@ -142,7 +142,11 @@ def test_vehicles_walkers_and_props_are_seen_and_nothing_else() -> None:
         _6="sensor.camera.rgb",
     )
     others = met(sight_in(world), *(actor(i, 110.0, 50.0 + i) for i in (2, 3, 4, 5, 6)))
-    assert [(other.id, other.kind) for other in others] == [(2, Kind.VEHICLE), (3, Kind.WALKER), (4, Kind.PROP)]
+    assert [(other.id, other.kind) for other in others] == [
+        (2, ActorKind.VEHICLE),
+        (3, ActorKind.WALKER),
+        (4, ActorKind.PROP),
+    ]
 
 
 @pytest.mark.parametrize("knowledge", [Knowledge.SEEN, Knowledge.FULL])

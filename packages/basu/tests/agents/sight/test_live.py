@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import carla
 import numpy as np
 
-from basu.agents.sight import Kind, Other, Sight
+from basu.agents.sight import ActorKind, Other, Sight
 from basu.agents.sight.occlusion import make_boxes, sample_points_m
 from basu.cli import main
 from servers import RunningServer
@@ -86,7 +86,7 @@ def beside(number: int, lane: carla.Transform, right_m: float) -> Other:
     """A walker on a lane, or so far to its right."""
     yaw_rad = math.radians(lane.rotation.yaw)
     x_m, y_m = lane.location.x - right_m * math.sin(yaw_rad), lane.location.y + right_m * math.cos(yaw_rad)
-    return Other(number, Kind.WALKER, x_m, y_m, yaw_rad, 0.0, 0.0, 0.0, 0.2, 0.2, lane.location.z + 0.95, 0.9)
+    return Other(number, ActorKind.WALKER, x_m, y_m, yaw_rad, 0.0, 0.0, 0.0, 0.2, 0.2, lane.location.z + 0.95, 0.9)
 
 
 def is_free(world: carla.World, sensor: carla.Location, point: carla.Location) -> bool:

@@ -6,7 +6,7 @@ The figures come from running ``StatisticsManager`` of carla-simulator/leaderboa
 
 import pytest
 
-from basu.metrics.leaderboard.rules import FACTORS, POINTS, SCENARIOS_ONLY, Event, Kind, Version, penalty
+from basu.metrics.leaderboard.rules import FACTORS, POINTS, SCENARIOS_ONLY, Kind, LeaderboardEvent, Version, penalty
 
 Happened = list[tuple[str, float | None]]
 NOTHING: Happened = []
@@ -46,27 +46,27 @@ SCENARIOS: Happened = [("scenario_timeouts", None), ("yield_emergency_vehicle_in
     ],
 )
 def test_the_penalty_is_that_of_the_leaderboards_own_code(version: str, happened: Happened, expected: float) -> None:
-    events = [Event(kind=Kind(kind), tick=0, percentage=percentage) for kind, percentage in happened]
+    events = [LeaderboardEvent(kind=Kind(kind), tick=0, percentage=percentage) for kind, percentage in happened]
     assert penalty(Version(version), events) == pytest.approx(expected, abs=6e-7)
 
 
 def test_a_published_result_is_met() -> None:
     # public result files of leaderboard 2.0 have score_penalty 0.9643 and 0.94594 for these average speeds
     for percentage, expected in ((88.1, 0.9643), (81.98, 0.94594)):
-        assert penalty(Version.V2_0, [Event(kind=Kind.MIN_SPEED, tick=0, percentage=percentage)]) == pytest.approx(
-            expected, abs=1e-9
-        )
+        assert penalty(
+            Version.V2_0, [LeaderboardEvent(kind=Kind.MIN_SPEED, tick=0, percentage=percentage)]
+        ) == pytest.approx(expected, abs=1e-9)
 
 
 def test_the_hundredth_infraction_still_counts_in_2_1() -> None:
-    stops = [Event(kind=Kind.STOP, tick=n) for n in range(100)]
+    stops = [LeaderboardEvent(kind=Kind.STOP, tick=n) for n in range(100)]
     assert penalty(Version.V2_1, stops) == pytest.approx(1.0 / 26.0)
     assert penalty(Version.V2_0, stops) == pytest.approx(0.8**100)
 
 
 @pytest.mark.parametrize("version", list(Version))
 def test_what_ends_a_drive_costs_nothing_more(version: Version) -> None:
-    ends = [Event(kind=kind, tick=0) for kind in (Kind.ROUTE_DEVIATION, Kind.ROUTE_TIMEOUT, Kind.BLOCKED)]
+    ends = [LeaderboardEvent(kind=kind, tick=0) for kind in (Kind.ROUTE_DEVIATION, Kind.ROUTE_TIMEOUT, Kind.BLOCKED)]
     assert penalty(version, ends) == 1.0
 
 

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from basu.metrics.passengers.felt import GRAVITY_MPS2, Place, felt
+from basu.metrics.passengers.felt import GRAVITY_MPS2, PassengerPlace, felt
 from basu.metrics.passengers.filters import lowpass, moving_mean
 from fakes.drives import STEP_S
 from fakes.rides import braked, circling, eastward, ride
 
-MIDDLE = Place(0.0, 0.0, 0.0)
+MIDDLE = PassengerPlace(0.0, 0.0, 0.0)
 
 
 def test_an_even_braking_is_felt_as_it_is_everywhere_in_the_vehicle() -> None:
     history = ride(6.0, eastward(braked(6.0, 1.0, 1.5), 6.0))
-    for place in (MIDDLE, Place(1.0, -0.5, 0.3)):
+    for place in (MIDDLE, PassengerPlace(1.0, -0.5, 0.3)):
         sensed = felt(history, place)
         assert sensed is not None
         assert sensed.along_mps2[25:95] == pytest.approx(-1.5, abs=1e-9)
@@ -27,7 +27,7 @@ def test_an_even_braking_is_felt_as_it_is_everywhere_in_the_vehicle() -> None:
 def test_in_a_steady_bend_the_place_turns_about_the_bends_middle(forward_m: float, right_m: float) -> None:
     """a = w^2 r towards the middle, which lies ``radius`` to the right of the origin."""
     radius_m, speed_mps = 12.0, 4.0
-    sensed = felt(ride(10.0, circling(radius_m, speed_mps)), Place(forward_m, right_m, 0.0))
+    sensed = felt(ride(10.0, circling(radius_m, speed_mps)), PassengerPlace(forward_m, right_m, 0.0))
     assert sensed is not None
     turning_radps = speed_mps / radius_m
     assert sensed.across_mps2[5:-5] == pytest.approx(turning_radps**2 * (radius_m - right_m), rel=1e-3)
@@ -36,7 +36,7 @@ def test_in_a_steady_bend_the_place_turns_about_the_bends_middle(forward_m: floa
 
 def test_a_vehicle_that_begins_to_turn_swings_its_nose_sideways() -> None:
     """On the spot, yaw 0.5 a t^2: across = a x at a place x ahead, along = -a y at one y to the right."""
-    sensed = felt(ride(2.0, lambda t_s: {"yaw_rad": 0.5 * 0.2 * t_s**2}), Place(2.0, 1.0, 0.0))
+    sensed = felt(ride(2.0, lambda t_s: {"yaw_rad": 0.5 * 0.2 * t_s**2}), PassengerPlace(2.0, 1.0, 0.0))
     assert sensed is not None
     t_s = sensed.t_s[10] - STEP_S / 2.0
     assert sensed.across_mps2[10] == pytest.approx(0.2 * 2.0 - (0.2 * t_s) ** 2 * 1.0, abs=2e-3)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from basu.metrics.passengers.service import Visit, fault_of, service
-from basu.metrics.passengers.verdict import Judged, judge
+from basu.metrics.passengers.verdict import PassengerJudgement, judge
 from basu.metrics.success import success
 from basu.outcome import Outcome, Status
 from basu.records.history import History
@@ -20,7 +20,7 @@ LENGTH_M = 100.0
 ARRIVED = Outcome(Status.COMPLETED, "arrived")
 
 
-def judged(history: History, *, ended_early: bool = False) -> Judged:
+def judged(history: History, *, ended_early: bool = False) -> PassengerJudgement:
     found = judge(history, ended_early=ended_early)
     assert found is not None
     return found

@@ -9,9 +9,9 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from basu.metrics.boxes import other_boxes, own_boxes, touching
-from basu.metrics.passengers.verdict import Judged, judge
+from basu.metrics.passengers.verdict import PassengerJudgement, judge
 from basu.records.history import Collision, History
-from basu.routing import Control, Stop
+from basu.routing import RouteControl, Stop
 from fakes.drives import STEP_S, VEHICLE, stop_sign, straight_route
 from fakes.rides import Row, eastward, ride
 
@@ -49,7 +49,7 @@ def driven(
     *,
     walker: Callable[[float], Row] | None = None,
     stops: tuple[Stop, ...] = (),
-    controls: tuple[Control, ...] = (),
+    controls: tuple[RouteControl, ...] = (),
 ) -> History:
     """A ride to the end of a straight route; where boxes touch, the collision sensor has sent its message."""
     speed_mps, seconds = until_arrival(cruise_mps, halts or [])
@@ -95,7 +95,7 @@ def waiting(until_s: float) -> Callable[[float], Row]:
     return state
 
 
-def judged(history: History) -> Judged:
+def judged(history: History) -> PassengerJudgement:
     found = judge(history)
     assert found is not None
     assert found.comfort is not None
@@ -142,7 +142,7 @@ def test_collision_near_miss_harsh_stop_with_a_cause_gentle_ride(
     assert comfort_of(collision) < comfort_of(near_miss) < comfort_of(harsh) < comfort_of(gentle)
 
 
-def comfort_of(found: Judged) -> float:
+def comfort_of(found: PassengerJudgement) -> float:
     assert found.comfort is not None
     return found.comfort
 

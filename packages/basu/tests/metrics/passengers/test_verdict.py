@@ -9,7 +9,7 @@ from basu.errors import UserError
 from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score
 from basu.metrics.passengers.felt import balance, felt
 from basu.metrics.passengers.metric import passengers_to_json
-from basu.metrics.passengers.verdict import Judged, judge
+from basu.metrics.passengers.verdict import PassengerJudgement, judge
 from basu.metrics.score import score
 from basu.metrics.scoring import Scoring
 from basu.output.report.documents import RESULT_SCHEMA, read_schema
@@ -19,7 +19,7 @@ from fakes.rides import braked, eastward, moving, ride
 WALKING_MPS = 7.1 * 0.44704
 
 
-def judged(history: History, weights: ComfortWeights | None = None) -> Judged:
+def judged(history: History, weights: ComfortWeights | None = None) -> PassengerJudgement:
     found = judge(history, weights, ended_early=True)
     assert found is not None
     return found

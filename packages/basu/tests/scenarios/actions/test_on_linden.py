@@ -14,7 +14,7 @@ from basu.managers.stage.scenario_actors import ActorCommands
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
 from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path, along_lane
-from basu.scenarios.stage import Body, Pose
+from basu.scenarios.stage import ActorBox, Pose
 from servers import RunningServer
 
 STEP_S = 0.05
@@ -28,17 +28,17 @@ class OneActor:
     def __init__(self, client: carla.Client, actor: carla.Actor) -> None:
         self.actor, self.commands, self.time_s = actor, ActorCommands(client), 0.0
         self.member = SimpleNamespace(actor=actor, name="led")
-        self.seen: list[Body] = []
+        self.seen: list[ActorBox] = []
 
     def is_there(self, _name: str) -> bool:
         return True
 
-    def body(self, _name: str) -> Body:
+    def body(self, _name: str) -> ActorBox:
         pose, velocity, box = self.actor.get_transform(), self.actor.get_velocity(), self.actor.bounding_box
         yaw_rad = math.radians(pose.rotation.yaw)
         x_m = pose.location.x + box.location.x * math.cos(yaw_rad)
         y_m = pose.location.y + box.location.x * math.sin(yaw_rad)
-        return Body(x_m, y_m, pose.location.z, yaw_rad, velocity.x, velocity.y, box.extent.x, box.extent.y)
+        return ActorBox(x_m, y_m, pose.location.z, yaw_rad, velocity.x, velocity.y, box.extent.x, box.extent.y)
 
     def move(self, _name: str, *motion: float) -> None:
         self.commands.move(self.member, *motion)

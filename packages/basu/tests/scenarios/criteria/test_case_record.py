@@ -18,7 +18,7 @@ from basu.scenarios.criteria import (
     LeastDistance,
     NoCollision,
     Played,
-    Thing,
+    StandingThing,
     reported_always,
 )
 from basu.scenarios.criteria.case_record import judgements_in, part_of, played_in
@@ -35,7 +35,7 @@ def driven_case() -> Played:
     return played(
         ride(6.0, eastward(braked(8.0, 3.0, 4.0), 7.0), others=[(9, moving(40.0, 9.0, 0.0, -2.0))]),
         outcome=Outcome(Status.SCENARIO_TIMEOUT, "not over after 6 s"),
-        things=(Thing("barrier", 37.0, 0.3, 0.1, 0.5, 1.5),),
+        things=(StandingThing("barrier", 37.0, 0.3, 0.1, 0.5, 1.5),),
         collisions=(hit(90, "vehicle.audi.tt", 9),),
     )
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from basu.scenarios.criteria import Gentle, Thing
+from basu.scenarios.criteria import Gentle, StandingThing
 from fakes.drives import STEP_S
 from fakes.played import played
 from fakes.rides import braked, eastward, ride
@@ -30,7 +30,7 @@ def test_a_harsh_stop_without_cause_is_a_phantom_stop() -> None:
 
 
 def test_a_thing_of_the_scenarios_is_a_cause() -> None:
-    case = played(stopped(4.0), things=(Thing("barrier", 37.0, 0.0, 0.0, 0.5, 1.5),))  # type: ignore[arg-type]
+    case = played(stopped(4.0), things=(StandingThing("barrier", 37.0, 0.0, 0.0, 0.5, 1.5),))  # type: ignore[arg-type]
     assert Gentle().judge(case).passed is False
     said = Gentle(phantom_only=True).judge(case)
     assert said.passed is True

@@ -11,7 +11,7 @@ from basu.scenarios.criteria import (
     LeastTtc,
     NoCollision,
     Played,
-    Thing,
+    StandingThing,
     margins_of,
     reported_always,
 )
@@ -139,7 +139,7 @@ def test_records_of_any_length_are_judged_in_words(criterion: Criterion, frames:
     history = ride(frames * 0.05 + 1e-3, eastward(lambda _: 10.0, 3.0), others=others)
     assert len(history.frames) == frames
     contact = () if alone else (hit(frames - 1, "vehicle.audi.tt", 9),)
-    things = () if alone else (Thing("cone", 9.0, 3.0, 0.0, 0.2, 0.2),)
+    things = () if alone else (StandingThing("cone", 9.0, 3.0, 0.0, 0.2, 0.2),)
     said = criterion.judge(played(history, things=things, collisions=contact))
     assert said.sentence
     assert "nan" not in said.sentence

@@ -2,14 +2,14 @@
 
 import pytest
 
-from basu.scenarios.criteria import LeastDistance, Thing
+from basu.scenarios.criteria import LeastDistance, StandingThing
 from basu.scenarios.criteria.criterion import Move, moved
 from basu.scenarios.stage import Pose
 from fakes.drives import at, driven
 from fakes.played import played
 
 SHUT, OPEN = Pose(30.0, 3.0), Pose(30.0, 1.8)
-DOOR = Thing("door", 30.0, 3.0, 0.0, 0.5, 0.1)
+DOOR = StandingThing("door", 30.0, 3.0, 0.0, 0.5, 0.1)
 
 
 def test_a_move_ends_one_place_and_begins_another() -> None:

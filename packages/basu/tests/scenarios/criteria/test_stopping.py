@@ -3,12 +3,12 @@
 import pytest
 
 from basu.errors import ScenarioError
-from basu.scenarios.criteria import StoppedFor, Thing
+from basu.scenarios.criteria import StandingThing, StoppedFor
 from fakes.drives import at, driven
 from fakes.played import played
 from fakes.rides import braked, eastward, moving, ride
 
-BARRIER = (Thing("barrier", 40.0, 0.0, 0.0, 0.5, 2.0),)
+BARRIER = (StandingThing("barrier", 40.0, 0.0, 0.0, 0.5, 2.0),)
 TO_30_M = [*at(10.0, 3.0), *at(0.0, 2.0), *at(5.0, 1.0)]  # then at rest for 2 s, the front at 32 m
 
 

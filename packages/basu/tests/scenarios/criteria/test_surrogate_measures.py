@@ -11,7 +11,7 @@ from hypothesis.extra import numpy as arrays
 from shapely import Polygon, affinity
 
 from basu.errors import ScenarioError
-from basu.scenarios.criteria import KeepsHeadway, LeastDistance, LeastTtc, Pet, Thing
+from basu.scenarios.criteria import KeepsHeadway, LeastDistance, LeastTtc, Pet, StandingThing
 from basu.scenarios.criteria.surrogate_measures import gap_m
 from fakes.drives import at, driven, hit
 from fakes.played import played
@@ -41,7 +41,7 @@ def test_without_a_limit_it_only_tells() -> None:
 
 
 def test_things_of_the_scenario_count_like_actors() -> None:
-    cone = Thing("cone", 20.0, 1.6, 0.4, 0.2, 0.2)
+    cone = StandingThing("cone", 20.0, 1.6, 0.4, 0.2, 0.2)
     said = LeastDistance(0.5).judge(played(driven(at(10.0, 4.0)), things=(cone,)))
     assert said.other == "cone"
     assert said.measured == pytest.approx(1.6 - 1.0 - 0.2 * (math.cos(0.4) + math.sin(0.4)))  # to its corner
@@ -87,7 +87,7 @@ def test_a_contact_is_reported_with_the_speed_before_it() -> None:
 
 def test_a_thing_that_was_touched_was_no_distance_away_whatever_its_box() -> None:
     """The sensor names the actor that the thing is; its role is the thing's name."""
-    door = Thing("door", 20.0, 2.5, 0.0, 0.1, 0.5)
+    door = StandingThing("door", 20.0, 2.5, 0.0, 0.1, 0.5)
     case = played(driven(at(10.0, 4.0)), roles={31: "door"}, things=(door,))
     assert LeastDistance().judge(case).measured == pytest.approx(1.0)
     case = played(case.history, roles={31: "door"}, things=(door,), collisions=(hit(38, "static.prop.sign", 31),))
@@ -129,7 +129,9 @@ def test_braking_in_front_of_an_actor_it_is_least_on_the_way() -> None:
 
 
 def test_things_are_run_towards_like_actors() -> None:
-    said = LeastTtc(2.0).judge(played(driven(at(10.0, 2.05)), things=(Thing("barrier", 30.5, 0.0, 0.0, 0.5, 1.0),)))
+    said = LeastTtc(2.0).judge(
+        played(driven(at(10.0, 2.05)), things=(StandingThing("barrier", 30.5, 0.0, 0.0, 0.5, 1.0),))
+    )
     assert (said.other, said.passed) == ("barrier", False)
     assert said.measured == pytest.approx((30.0 - 22.0) / 10.0, abs=1e-6)
 

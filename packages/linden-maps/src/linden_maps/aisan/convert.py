@@ -7,7 +7,7 @@ import numpy as np
 
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
-from linden_maps.aisan.draft import Draft
+from linden_maps.aisan.draft import VectorMapDraft
 from linden_maps.aisan.furniture import add_furniture
 from linden_maps.aisan.lanes import Course, curvatures, headings, junction_flag
 from linden_maps.aisan.tables import STRAIGHT_R, Tables
@@ -32,7 +32,7 @@ def convert(lanelet_map: LaneletMap) -> Vectors:
     Raises:
         UserError: it has no road lanelet, or its projection is of another kind.
     """
-    draft = Draft(lanelet_map)
+    draft = VectorMapDraft(lanelet_map)
     if not draft.courses:
         raise UserError("the map has no lanelet of the subtype road, so it makes no lane")
     areas = _way_areas(draft)
@@ -77,7 +77,7 @@ def _limit_kmh(text: str) -> int | None:
     return round(value) if math.isfinite(value) and value >= 1.0 else None
 
 
-def _way_areas(draft: Draft) -> list[int]:
+def _way_areas(draft: VectorMapDraft) -> list[int]:
     """Add the area of each road lanelet; return their ids in way area's file."""
     found = []
     for course in draft.courses:
@@ -88,7 +88,7 @@ def _way_areas(draft: Draft) -> list[int]:
     return found
 
 
-def _node_ids(draft: Draft, course: Course, shared: dict[tuple[int, int], int]) -> list[tuple[int, int]]:
+def _node_ids(draft: VectorMapDraft, course: Course, shared: dict[tuple[int, int], int]) -> list[tuple[int, int]]:
     """Add the nodes along a course; return (node, point) of each place. Touching courses share their end nodes."""
     ends = ((course.bounds.left[0], course.bounds.right[0]), (course.bounds.left[-1], course.bounds.right[-1]))
     found = []
@@ -106,7 +106,7 @@ def _node_ids(draft: Draft, course: Course, shared: dict[tuple[int, int], int]) 
     return found
 
 
-def _add_rows(draft: Draft, nth: int, ids: list[tuple[int, int]], facts: _Facts) -> None:
+def _add_rows(draft: VectorMapDraft, nth: int, ids: list[tuple[int, int]], facts: _Facts) -> None:
     """Add the rows of lane.csv and dtlane.csv of a course."""
     course, graph = draft.courses[nth], draft.graph
     first, last = draft.first_row[nth], draft.first_row[nth] + course.rows - 1
@@ -137,7 +137,9 @@ def _add_rows(draft: Draft, nth: int, ids: list[tuple[int, int]], facts: _Facts)
     _add_details(draft, course, rows, ids, step, spans)
 
 
-def _add_details(draft: Draft, course: Course, rows: range, ids: list[tuple[int, int]], step: F64, spans: F64) -> None:
+def _add_details(
+    draft: VectorMapDraft, course: Course, rows: range, ids: list[tuple[int, int]], step: F64, spans: F64
+) -> None:
     """Add the rows of dtlane.csv of a course."""
     columns = (
         np.concatenate([[0.0], np.cumsum(spans)[:-1]]),
@@ -160,7 +162,7 @@ def _add_details(draft: Draft, course: Course, rows: range, ids: list[tuple[int,
     )
 
 
-def _ends(draft: Draft, others: tuple[int, ...], *, last: bool) -> tuple[int, int, int, int]:
+def _ends(draft: VectorMapDraft, others: tuple[int, ...], *, last: bool) -> tuple[int, int, int, int]:
     """Return the rows at the ends of other courses, filled up with 0 to four."""
     rows = [draft.first_row[n] + (draft.courses[n].rows - 1 if last else 0) for n in others]
     a, b, c, d = [*rows, 0, 0, 0, 0][:4]

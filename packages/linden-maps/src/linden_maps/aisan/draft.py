@@ -12,7 +12,7 @@ from linden_maps.lanelet2.model import LaneletMap
 from linden_maps.lanelet2.projection import NOWHERE, projection_of
 
 
-class Draft:
+class VectorMapDraft:
     """A vector map in the making."""
 
     def __init__(self, lanelet_map: LaneletMap) -> None:

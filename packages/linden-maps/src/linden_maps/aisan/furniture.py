@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from linden.maps.opendrive.evaluate.pieces import F64
-from linden_maps.aisan.draft import Draft
+from linden_maps.aisan.draft import VectorMapDraft
 from linden_maps.lanelet2.model import Relation, bounds_of
 
 _PAINT_M = 0.12
@@ -20,7 +20,7 @@ _BULBS = {"red": 1, "green": 2, "yellow": 3}
 _UPRIGHT_DEG, _LEVEL_DEG = 0.0, 90.0  # Vang, from the zenith
 
 
-def add_furniture(draft: Draft) -> None:
+def add_furniture(draft: VectorMapDraft) -> None:
     """Add all of it, and the points at the end."""
     users: dict[int, list[int]] = defaultdict(list)
     for number, lanelet in draft.source.lanelets("road"):
@@ -42,7 +42,7 @@ def add_furniture(draft: Draft) -> None:
     draft.points.write()
 
 
-def _add_paint(draft: Draft, number: int, users: list[int]) -> None:
+def _add_paint(draft: VectorMapDraft, number: int, users: list[int]) -> None:
     """Add whiteline rows along a way: one for each segment; broken lines alternate between paint and gap."""
     way = draft.source.ways[number]
     line = draft.source.line(number)
@@ -76,7 +76,7 @@ def _dashes(line: F64) -> list[tuple[F64, int]]:
     return pieces
 
 
-def _add_edge(draft: Draft, number: int, users: list[int]) -> None:
+def _add_edge(draft: VectorMapDraft, number: int, users: list[int]) -> None:
     """Add roadedge rows along a way, and curb rows where it is a kerb."""
     way = draft.source.ways[number]
     is_kerb = way.tags.get("type") == "curbstone" or way.tags.get("subtype") == "curbstone"
@@ -91,7 +91,7 @@ def _add_edge(draft: Draft, number: int, users: list[int]) -> None:
             draft.tables.add("curb", segment, _KERB_HEIGHT_M, _KERB_WIDTH_M, int(on_left), link)
 
 
-def _add_controls(draft: Draft) -> None:
+def _add_controls(draft: VectorMapDraft) -> None:
     """Add lights and stop signs with their poles, and a stopline row for each lane before them."""
     before: dict[int, list[int]] = defaultdict(list)
     for nth, after in enumerate(draft.graph.successors):
@@ -109,7 +109,9 @@ def _add_controls(draft: Draft) -> None:
         _add_control(draft, element, list(lanes) or inside, lines, is_light=is_light)
 
 
-def _add_control(draft: Draft, element: Relation, lanes: list[int], lines: dict[int, int], *, is_light: bool) -> None:
+def _add_control(
+    draft: VectorMapDraft, element: Relation, lanes: list[int], lines: dict[int, int], *, is_light: bool
+) -> None:
     heading = _heading_at_end(draft, lanes)
     signal = sign = 0
     for nth, way in enumerate(ref for ref in element.refs("refers") if ref in draft.source.ways):
@@ -133,7 +135,7 @@ def _add_control(draft: Draft, element: Relation, lanes: list[int], lines: dict[
             draft.tables.add("stopline", lines[ref], signal, sign, row)
 
 
-def _crossing(draft: Draft, lane: int, line: F64) -> F64:
+def _crossing(draft: VectorMapDraft, lane: int, line: F64) -> F64:
     """Return the place on a stop line in front of a lane."""
     middle = draft.courses[draft.course_of[lane]].middle
     away = np.linalg.norm(middle[:, None] - np.linspace(line[0], line[-1], 33)[None], axis=2)
@@ -141,7 +143,7 @@ def _crossing(draft: Draft, lane: int, line: F64) -> F64:
     return place
 
 
-def _heading_at_end(draft: Draft, lanes: list[int]) -> float:
+def _heading_at_end(draft: VectorMapDraft, lanes: list[int]) -> float:
     """Return the direction of lanes at their end, degrees clockwise from north."""
     steps = [draft.courses[draft.course_of[lane]].middle[-2:] for lane in lanes]
     east, north = (sum(float(step[1, axis] - step[0, axis]) for step in steps) for axis in (0, 1))
@@ -153,7 +155,7 @@ def _facing(heading_deg: float) -> tuple[str, str]:
     return f"{(heading_deg + 180.0) % 360.0:.4f}", f"{_LEVEL_DEG:.4f}"
 
 
-def _add_pole(draft: Draft, top: F64, link: int) -> int:
+def _add_pole(draft: VectorMapDraft, top: F64, link: int) -> int:
     """Add a pole from the height of the nearest lane up to a sign or light, and its data."""
     ground = top[2] if not link else _height_of_row(draft, link)
     foot = np.array([top[0], top[1], ground])
@@ -163,12 +165,12 @@ def _add_pole(draft: Draft, top: F64, link: int) -> int:
     return pole
 
 
-def _height_of_row(draft: Draft, row: int) -> float:
+def _height_of_row(draft: VectorMapDraft, row: int) -> float:
     nth = int(np.searchsorted(draft.first_row, row, side="right")) - 1
     return float(draft.courses[nth].middle[row - draft.first_row[nth], 2])
 
 
-def _add_bulbs(draft: Draft, line: F64, bulbs: int, heading_deg: float, pole: int, link: int) -> int:
+def _add_bulbs(draft: VectorMapDraft, line: F64, bulbs: int, heading_deg: float, pole: int, link: int) -> int:
     """Add one row for each bulb of a light; return the id of the first."""
     if bulbs in draft.source.ways:
         nodes = [draft.source.nodes[node] for node in draft.source.ways[bulbs].nodes]
@@ -182,7 +184,7 @@ def _add_bulbs(draft: Draft, line: F64, bulbs: int, heading_deg: float, pole: in
     return first
 
 
-def _add_junctions(draft: Draft) -> None:
+def _add_junctions(draft: VectorMapDraft) -> None:
     inside: dict[str, list[int]] = defaultdict(list)
     for number, lanelet in draft.source.lanelets("road"):
         inside[lanelet.tags.get("intersection_area", "")].append(number)
@@ -194,7 +196,7 @@ def _add_junctions(draft: Draft) -> None:
             draft.tables.add("intersection", area, draft.nearest_row(inside[str(number)], middle))
 
 
-def _add_crosswalks(draft: Draft) -> None:
+def _add_crosswalks(draft: VectorMapDraft) -> None:
     """Add the outline of each crosswalk, and its bars."""
     crossed: dict[int, list[int]] = defaultdict(list)
     for number, lanelet in draft.source.lanelets("road"):

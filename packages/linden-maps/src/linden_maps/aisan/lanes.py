@@ -35,7 +35,7 @@ class Course(NamedTuple):
         return len(self.middle) - 1
 
 
-class Graph(NamedTuple):
+class CourseGraph(NamedTuple):
     """Which courses lead into which, and which lie beside each other; by place in the list of courses."""
 
     successors: tuple[tuple[int, ...], ...]
@@ -76,7 +76,7 @@ def _resampled(line: F64, count: int) -> F64:
     return resampled
 
 
-def graph_of(lanelet_map: LaneletMap, courses: list[Course]) -> Graph:
+def graph_of(lanelet_map: LaneletMap, courses: list[Course]) -> CourseGraph:
     """Join courses as Lanelet2 does: one follows another where both sides go on at the same nodes."""
     starts: dict[tuple[int, int], list[int]] = defaultdict(list)
     for nth, course in enumerate(courses):
@@ -93,7 +93,7 @@ def graph_of(lanelet_map: LaneletMap, courses: list[Course]) -> Graph:
             predecessors[other].append(nth)
     left_of, right_of, changes = _beside(lanelet_map, courses)
     number, count, section = _numbered(len(courses), left_of, right_of)
-    return Graph(tuple(successors), tuple(map(tuple, predecessors)), number, count, section, changes, lost)
+    return CourseGraph(tuple(successors), tuple(map(tuple, predecessors)), number, count, section, changes, lost)
 
 
 def _beside(lanelet_map: LaneletMap, courses: list[Course]) -> tuple[dict[int, int], dict[int, int], tuple[bool, ...]]:
@@ -166,7 +166,7 @@ def _turn(course: Course, following: Course) -> float:
     return math.remainder(headings(following)[-1] - headings(course)[-1], math.tau)
 
 
-def junction_flag(courses: list[Course], graph: Graph, nth: int, *, first: bool, last: bool) -> int:
+def junction_flag(courses: list[Course], graph: CourseGraph, nth: int, *, first: bool, last: bool) -> int:
     """Return JCT of a row: 1, 2 where it branches to the left, right; 3, 4 where it merges from there; 5 for both.
 
     The first successor (FLID) is the straightest; the flag says where the next one goes. Predecessors likewise.

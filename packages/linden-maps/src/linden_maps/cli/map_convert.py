@@ -12,8 +12,8 @@ from linden_maps.cli.map_files import bytes_of, is_built_in
 from linden_maps.cli.map_source import opendrive_of
 from linden_maps.cli.output import say
 from linden_maps.lanelet2.bounds import STATED_ERROR_M
-from linden_maps.lanelet2.bus_stops import Stop, shuttle_stops
-from linden_maps.lanelet2.convert import UNKNOWN_SPEED_KMH, Converted, Wanted, convert, counts
+from linden_maps.lanelet2.bus_stops import KerbStop, shuttle_stops
+from linden_maps.lanelet2.convert import UNKNOWN_SPEED_KMH, ConvertedMap, Wanted, convert, counts
 from linden_maps.lanelet2.model import LaneletMap, without_lanelets
 from linden_maps.lanelet2.osm import osm_bytes, projector_info, read_osm
 from linden_maps.lanelet2.shared import NEAR_M
@@ -52,15 +52,15 @@ def wanted_of(arguments: argparse.Namespace, opendrive: OpenDrive) -> Wanted:
     Raises:
         UserError: the file of stops cannot be read.
     """
-    stops: tuple[Stop, ...] = ()
+    stops: tuple[KerbStop, ...] = ()
     if arguments.stops is not None:
-        stops = tuple(Stop(one.id, one.name, one.x_m, -one.y_m) for one in read_stops(arguments.stops))
+        stops = tuple(KerbStop(one.id, one.name, one.x_m, -one.y_m) for one in read_stops(arguments.stops))
     elif is_built_in(arguments.file):
         stops = shuttle_stops(opendrive.geo_origin)
     return Wanted(arguments.pairwise_priority, arguments.format == 2, stops)
 
 
-def written_of(converted: Converted, arguments: argparse.Namespace) -> Converted:
+def written_of(converted: ConvertedMap, arguments: argparse.Namespace) -> ConvertedMap:
     """Return what is written of a map: without sidewalks, if they are not wanted."""
     if arguments.walkways:
         return converted
@@ -94,7 +94,7 @@ def _to_aisan(arguments: argparse.Namespace) -> None:
     say(f"{arguments.output}: read back by the rules of Autoware's nodes, {len(found)} complaints")
 
 
-def report(path: Path, converted: Converted) -> None:
+def report(path: Path, converted: ConvertedMap) -> None:
     """Print what a Lanelet2 map has, what was left out, and what was assumed."""
     lanelet_map = converted.lanelet_map
     say(

@@ -12,7 +12,7 @@ from linden_maps.aisan.reading import Folder
 from linden_maps.aisan.tables import COLUMNS
 from linden_maps.drawing.style import ASPHALT, GRASS, GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, path
 from linden_maps.drawing.surfaces import marks, surfaces
-from linden_maps.lanelet2.model import LaneletMap, Way, bounds_of
+from linden_maps.lanelet2.model import LaneletMap, LaneletWay, bounds_of
 
 F64 = NDArray[np.float64]
 
@@ -103,7 +103,7 @@ def aisan_svg(folder: Folder, under: OpenDrive | None = None, window: Window | N
     return _svg(layers, folder["point"][:, [5, 4]], under, window)
 
 
-def _is(way: Way, kind: str) -> bool:
+def _is(way: LaneletWay, kind: str) -> bool:
     return way.tags.get("type") == kind
 
 

@@ -14,7 +14,7 @@ from linden.maps.opendrive.signals import place
 from linden.maps.records import PlacedSignal
 from linden_maps.lanelet2.movements import LIGHT, STOP, YIELD
 from linden_maps.lanelet2.outlines import outline_of
-from linden_maps.lanelet2.stretches import ROAD, Network, Stretch
+from linden_maps.lanelet2.stretches import ROAD, LaneletNetwork, Stretch
 
 _SET_BACK_M = 0.5
 """How far before a junction the stop line lies where none is painted."""
@@ -42,7 +42,7 @@ class StopLine(NamedTuple):
     painted: bool
 
 
-def devices_of(opendrive: OpenDrive, network: Network) -> list[Device]:
+def devices_of(opendrive: OpenDrive, network: LaneletNetwork) -> list[Device]:
     """Return the stop signs, yield signs and lights that speak to lanes before or in a junction."""
     tables = tables_of(opendrive)
     by_lane: dict[tuple[int, int], list[int]] = defaultdict(list)
@@ -68,7 +68,10 @@ def devices_of(opendrive: OpenDrive, network: Network) -> list[Device]:
 
 
 def _lanes(
-    network: Network, by_lane: dict[tuple[int, int], list[int]], origins: dict[int, list[int]], placed: PlacedSignal
+    network: LaneletNetwork,
+    by_lane: dict[tuple[int, int], list[int]],
+    origins: dict[int, list[int]],
+    placed: PlacedSignal,
 ) -> tuple[list[int], list[int]]:
     """Return the movements that a signal governs, and the lanes before them."""
     movements: dict[int, None] = {}
@@ -91,7 +94,7 @@ def _holds(stretch: Stretch, s_m: float) -> bool:
     return any(piece.start_m - 1e-6 <= s_m <= piece.end_m + 1e-6 for piece in stretch.pieces)
 
 
-def _ahead(network: Network, number: int) -> list[tuple[int, list[int]]]:
+def _ahead(network: LaneletNetwork, number: int) -> list[tuple[int, list[int]]]:
     """Return the last lanelets before the junction ahead on the same road, and those inside that they lead into."""
     road = network.stretches[number].road
     found, waiting, seen = [], [number], {number}
@@ -107,7 +110,7 @@ def _ahead(network: Network, number: int) -> list[tuple[int, list[int]]]:
     return found
 
 
-def stop_line(tables: Tables, network: Network, approaches: tuple[int, ...], painted: list[F64]) -> StopLine:
+def stop_line(tables: Tables, network: LaneletNetwork, approaches: tuple[int, ...], painted: list[F64]) -> StopLine:
     """Return the line that those on given lanes of one approach stop at.
 
     ``painted`` are the middles (2,) of the map's painted stop lines; where none lies on the approach, the line lies

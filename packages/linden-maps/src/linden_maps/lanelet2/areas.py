@@ -32,7 +32,7 @@ _NEAR_M = 0.01
 _TOUCH_M = 1e-3
 
 
-class Leg(NamedTuple):
+class EntryLeg(NamedTuple):
     """Where a street meets a junction: nodes from left to right in the direction of entry."""
 
     nodes: tuple[int, ...]
@@ -71,7 +71,7 @@ def ring_of(
     return ring if len(ring) > 2 else ()
 
 
-def _legs(target: LaneletMap, entries: list[Bounds], exits: list[Bounds]) -> list[Leg]:
+def _legs(target: LaneletMap, entries: list[Bounds], exits: list[Bounds]) -> list[EntryLeg]:
     """Return the legs in the order of their angle; lanes that share a node at the junction are one leg."""
     edges = [(side.left[-1], side.right[-1]) for side in entries] + [(side.right[0], side.left[0]) for side in exits]
     groups: list[set[int]] = []
@@ -90,11 +90,11 @@ def _legs(target: LaneletMap, entries: list[Bounds], exits: list[Bounds]) -> lis
         nodes = dict.fromkeys(node for edge in group for node in edge)
         ranked = sorted(nodes, key=lambda node: (float(_place(target, node) @ across), node))
         away = _places(target, tuple(ranked)).mean(axis=0) - middle
-        legs.append(Leg(tuple(ranked), math.atan2(away[1], away[0])))
+        legs.append(EntryLeg(tuple(ranked), math.atan2(away[1], away[0])))
     return sorted(legs, key=lambda leg: (leg.angle_rad, leg.nodes))
 
 
-def _ring(target: LaneletMap, legs: list[Leg], kerbs: list[tuple[int, ...]]) -> tuple[int, ...]:
+def _ring(target: LaneletMap, legs: list[EntryLeg], kerbs: list[tuple[int, ...]]) -> tuple[int, ...]:
     ring: list[int] = []
     for leg, following in zip(legs, [*legs[1:], *legs[:1]], strict=True):
         ring += leg.nodes

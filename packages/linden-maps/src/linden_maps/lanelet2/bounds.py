@@ -13,10 +13,10 @@ import numpy as np
 from linden.maps.opendrive.evaluate.pieces import F64, I64
 from linden.maps.opendrive.evaluate.strips import sample, sections_before, sections_of
 from linden.maps.opendrive.evaluate.tables import Tables
-from linden_maps.lanelet2.model import Ids, LaneletMap, Node, Way
+from linden_maps.lanelet2.model import Ids, LaneletMap, LaneletPoint, LaneletWay
 from linden_maps.lanelet2.shared import one_line
 from linden_maps.lanelet2.simplify import kept_points
-from linden_maps.lanelet2.stretches import Network, Side, Stretch
+from linden_maps.lanelet2.stretches import LaneletNetwork, Side, Stretch
 
 TOLERANCE_M = 0.015
 STATED_ERROR_M = 0.02
@@ -26,7 +26,7 @@ _REFINED = 4
 _SAME_M = 1e-4
 
 
-class Edge(NamedTuple):
+class LaneEdge(NamedTuple):
     """How to evaluate one piece of a side: a lane, which of its edges, and where."""
 
     row: int
@@ -47,7 +47,7 @@ class Laid(NamedTuple):
     shared: frozenset[Side]  # sides of two ways through a junction that became one
 
 
-class _Places(NamedTuple):
+class _Samples(NamedTuple):
     """Where along each section to look: refined samples."""
 
     s_m: F64
@@ -55,7 +55,7 @@ class _Places(NamedTuple):
     first: I64  # (sections + 1,)
 
 
-def _places(tables: Tables) -> _Places:
+def _places(tables: Tables) -> _Samples:
     samples = sample(tables, sections_of(tables))
     count = int(sections_before(tables)[-1])
     goes_on = np.append(samples.section[1:] == samples.section[:-1], [False])[: len(samples.section)]
@@ -66,22 +66,22 @@ def _places(tables: Tables) -> _Places:
     following = np.minimum(origin + 1, len(steps) - 1)
     s_m = samples.s_m[origin] + np.where(goes_on[origin], samples.s_m[following] - samples.s_m[origin], 0.0) * share
     per_section = np.bincount(samples.section[origin], minlength=count)
-    return _Places(s_m, samples.probe_m[origin], np.concatenate([[0], np.cumsum(per_section)]))
+    return _Samples(s_m, samples.probe_m[origin], np.concatenate([[0], np.cumsum(per_section)]))
 
 
-def edges_of_stretch(before: I64, stretch: Stretch) -> dict[Side, tuple[Edge, ...]]:
+def edges_of_stretch(before: I64, stretch: Stretch) -> dict[Side, tuple[LaneEdge, ...]]:
     """Return how the two sides of a stretch are evaluated; ``before``: the sections before each road's."""
     on_left = (stretch.pieces[0].lane_id > 0) == stretch.forward
     outer, inner = (stretch.left, stretch.right) if on_left else (stretch.right, stretch.left)
     return {
         side: tuple(
-            Edge(p.row, is_outer, int(before[stretch.road]) + p.section, p.start_m, p.end_m) for p in stretch.pieces
+            LaneEdge(p.row, is_outer, int(before[stretch.road]) + p.section, p.start_m, p.end_m) for p in stretch.pieces
         )
         for side, is_outer in ((outer, True), (inner, False))
     }
 
 
-def evaluate(tables: Tables, sides: Iterable[tuple[Edge, ...]]) -> list[F64]:
+def evaluate(tables: Tables, sides: Iterable[tuple[LaneEdge, ...]]) -> list[F64]:
     """Return the points (N, 3) along each side in ascending s, no two at the same place."""
     places = _places(tables)
     rows, outer, lifted, s_m, probe_m, counts = [], [], [], [], [], []
@@ -153,9 +153,11 @@ class _Joints:
         self.parent[high] = low
 
 
-def lay(tables: Tables, network: Network, kerbs: dict[Side, tuple[Edge, ...]], target: LaneletMap, ids: Ids) -> Laid:
+def lay(
+    tables: Tables, network: LaneletNetwork, kerbs: dict[Side, tuple[LaneEdge, ...]], target: LaneletMap, ids: Ids
+) -> Laid:
     """Add the ways of all stretches, and kerbs that bound none, to a map; without tags yet."""
-    specs: dict[Side, tuple[Edge, ...]] = {}
+    specs: dict[Side, tuple[LaneEdge, ...]] = {}
     forward: dict[Side, bool] = {}
     before = sections_before(tables)
     for stretch in network.stretches:
@@ -196,12 +198,12 @@ def lay(tables: Tables, network: Network, kerbs: dict[Side, tuple[Edge, ...]], t
                 nodes.append(node_of[root])
                 continue
             node = ids.new("node", key, nth)
-            target.nodes[node] = Node(*point)
+            target.nodes[node] = LaneletPoint(*point)
             if root >= 0:
                 node_of[root] = node
             nodes.append(node)
         way = ids.new("way", key)
-        target.ways[way] = Way(tuple(nodes if forward[side] else nodes[::-1]), {})
+        target.ways[way] = LaneletWay(tuple(nodes if forward[side] else nodes[::-1]), {})
         way_of[side], nodes_of[side] = way, tuple(nodes)
     shared = frozenset(sides[each] for number, other in same.items() for each in (number, other.number))
     return Laid(way_of, nodes_of, lost, gap_m, shared)
@@ -214,7 +216,7 @@ def side_key(tables: Tables, side: Side) -> str:
 
 
 def _join(
-    network: Network, index: dict[Side, int], lines: list[F64]
+    network: LaneletNetwork, index: dict[Side, int], lines: list[F64]
 ) -> tuple[_Joints, tuple[tuple[int, int], ...], float]:
     """Make one the ends of lanes that follow each other."""
     joints = _Joints(list(range(2 * len(lines))))

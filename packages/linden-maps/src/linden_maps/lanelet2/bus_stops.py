@@ -12,7 +12,7 @@ import numpy as np
 
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.scenery.scene.linden_survey import placed
-from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.draft import LaneletDraft
 from linden_maps.lanelet2.model import Member
 from linden_maps.lanelet2.stretches import ROAD, SHOULDER, Stretch
 
@@ -22,7 +22,7 @@ REACH_M = 8.0
 """From a stop's place to the edge of its lane."""
 
 
-class Stop(NamedTuple):
+class KerbStop(NamedTuple):
     """A stop in OpenDRIVE's frame, near its kerb."""
 
     id: str
@@ -31,18 +31,18 @@ class Stop(NamedTuple):
     y_m: float
 
 
-def shuttle_stops(origin_deg: tuple[float, float]) -> tuple[Stop, ...]:
+def shuttle_stops(origin_deg: tuple[float, float]) -> tuple[KerbStop, ...]:
     """Return the shuttle's stops in Linden, on a map with its origin at this latitude and longitude."""
     text = (resources.files("linden") / "data" / "linden.geojson").read_text("utf-8")
     stops = [f for f in json.loads(text)["features"] if f["properties"]["feature"] == "shuttle_stop"]
     places = placed([stop["geometry"]["coordinates"] for stop in stops], origin_deg)
     return tuple(
-        Stop(stop["properties"]["id"], stop["properties"]["name"], float(x), -float(y))
+        KerbStop(stop["properties"]["id"], stop["properties"]["name"], float(x), -float(y))
         for stop, (x, y) in zip(stops, places.tolist(), strict=True)
     )
 
 
-def add_bus_stops(draft: Draft, stops: tuple[Stop, ...]) -> tuple[Stop, ...]:
+def add_bus_stops(draft: LaneletDraft, stops: tuple[KerbStop, ...]) -> tuple[KerbStop, ...]:
     """Add an area and an element for each stop; return the stops that are far from any lane."""
     lanes = [
         (stretch, lanelet)
@@ -60,7 +60,7 @@ def add_bus_stops(draft: Draft, stops: tuple[Stop, ...]) -> tuple[Stop, ...]:
     return tuple(lost)
 
 
-def _add(draft: Draft, stop: Stop, stretch: Stretch, lanelet: int) -> None:
+def _add(draft: LaneletDraft, stop: KerbStop, stretch: Stretch, lanelet: int) -> None:
     beside = {
         other.left: number
         for other, number in zip(draft.network.stretches, draft.lanelet_of, strict=True)
@@ -74,17 +74,17 @@ def _add(draft: Draft, stop: Stop, stretch: Stretch, lanelet: int) -> None:
     draft.add_element("bus_stop_area", [Member("way", area, "refers")], [lanelet, kerb], "bus stop", stop.id)
 
 
-def _side(draft: Draft, lanelet: int, role: str) -> F64:
+def _side(draft: LaneletDraft, lanelet: int, role: str) -> F64:
     nodes = getattr(draft.bounds[lanelet], role)
     return np.array([draft.target.nodes[node][:3] for node in nodes])
 
 
-def _from_edge_m(draft: Draft, lanelet: int, stop: Stop) -> float:
+def _from_edge_m(draft: LaneletDraft, lanelet: int, stop: KerbStop) -> float:
     """Return how far a stop lies from the right edge of a lane."""
     return _nearest(_side(draft, lanelet, "right"), stop)[0]
 
 
-def _nearest(line: F64, stop: Stop) -> tuple[float, float]:
+def _nearest(line: F64, stop: KerbStop) -> tuple[float, float]:
     """Return the distance of a stop from a line (N, 3) in plan, and how far along the line the nearest place is, m."""
     start, step = line[:-1, :2], np.diff(line[:, :2], axis=0)
     length = np.hypot(*step.T)
@@ -95,7 +95,7 @@ def _nearest(line: F64, stop: Stop) -> tuple[float, float]:
     return float(away[best]), float(length[:best].sum() + share[best] * length[best])
 
 
-def _window(line: F64, stop: Stop) -> F64:
+def _window(line: F64, stop: KerbStop) -> F64:
     """Return the part of a line about a stop, ``LENGTH_M`` long, moved along where the line ends before."""
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
     half_m = 0.5 * min(LENGTH_M, float(length[-1]))

@@ -14,7 +14,7 @@ from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.protocol.values.enums import LaneType
 from linden_maps.lanelet2.bounds import edges_of_stretch, evaluate
-from linden_maps.lanelet2.convert import Converted, convert
+from linden_maps.lanelet2.convert import ConvertedMap, convert
 from linden_maps.lanelet2.model import LaneletMap, bounds_of
 from linden_maps.lanelet2.second_reader import Routes
 from linden_maps.lanelet2.stretches import BICYCLE, DRIVABLE, ROAD, SHOULDER, WALKWAY, intersections, network_of
@@ -134,7 +134,7 @@ def _key(cells: F64) -> F64:
     return key
 
 
-def reach(opendrive: OpenDrive, routes: Routes, converted: Converted | None = None) -> Reach:
+def reach(opendrive: OpenDrive, routes: Routes, converted: ConvertedMap | None = None) -> Reach:
     """Compare which driving lanes lead into which: OpenDRIVE's links, and what Lanelet2's library found.
 
     Lanelets are known by their ids, which depend on the OpenDRIVE map alone.
@@ -182,7 +182,7 @@ class Worst(NamedTuple):
     shared_m: float
 
 
-def worst_error_m(opendrive: OpenDrive, converted: Converted) -> Worst:
+def worst_error_m(opendrive: OpenDrive, converted: ConvertedMap) -> Worst:
     """Return the worst errors of a converted map."""
     tables = tables_of(opendrive)
     before = np.cumsum([0, *(len(road.sections) for road in tables.roads)])

@@ -17,7 +17,7 @@ from linden_maps.lanelet2.approaches import (
     stop_line,
 )
 from linden_maps.lanelet2.claims import complete_claims
-from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.draft import LaneletDraft
 from linden_maps.lanelet2.model import Member
 from linden_maps.lanelet2.movements import FREE, LIGHT, STOP, YIELD, Movement, yields
 
@@ -26,7 +26,7 @@ _STRICTEST = (LIGHT, STOP, YIELD, FREE)
 
 
 def add_controls(
-    opendrive: OpenDrive, draft: Draft, movements: dict[int, list[Movement]], *, pairwise: bool = False
+    opendrive: OpenDrive, draft: LaneletDraft, movements: dict[int, list[Movement]], *, pairwise: bool = False
 ) -> int:
     """Add all of them; return how many signs and lights speak to no lane.
 
@@ -68,7 +68,7 @@ def _phases(devices: list[Device]) -> dict[int, frozenset[str]]:
     return found
 
 
-def _lit(draft: Draft) -> frozenset[int]:
+def _lit(draft: LaneletDraft) -> frozenset[int]:
     """Return the movements (stretches) with a light."""
     lights = {number for number, _ in draft.target.elements("traffic_light")}
     return frozenset(
@@ -76,18 +76,18 @@ def _lit(draft: Draft) -> frozenset[int]:
     )
 
 
-def _ring(draft: Draft, stretch: int) -> F64:
+def _ring(draft: LaneletDraft, stretch: int) -> F64:
     """Return the outline (N, 2) of a stretch's lanelet."""
     bounds = draft.bounds[draft.lanelet_of[stretch]]
     return np.array([draft.target.nodes[node][:2] for node in (*bounds.left, *bounds.right[::-1])])
 
 
-def _approach_key(draft: Draft, approaches: tuple[int, ...]) -> tuple[int, bool]:
+def _approach_key(draft: LaneletDraft, approaches: tuple[int, ...]) -> tuple[int, bool]:
     stretch = draft.network.stretches[approaches[0]]
     return stretch.road, stretch.forward
 
 
-def _stop_lines(draft: Draft, devices: list[Device]) -> dict[tuple[int, bool], int]:
+def _stop_lines(draft: LaneletDraft, devices: list[Device]) -> dict[tuple[int, bool], int]:
     """Add a stop line for each approach with a light or a stop sign; return their ways by road and direction."""
     painted = painted_stop_lines(draft.tables)
     lanes: dict[tuple[int, bool], dict[int, None]] = defaultdict(dict)
@@ -104,7 +104,7 @@ def _stop_lines(draft: Draft, devices: list[Device]) -> dict[tuple[int, bool], i
     return lines
 
 
-def _device_way(draft: Draft, device: Device) -> int:
+def _device_way(draft: LaneletDraft, device: Device) -> int:
     """Add the way of a light or sign: its lower edge, from left to right as its traffic sees it; return its id."""
     lanes = device.approaches or device.movements
     headings = [heading_before(draft.tables, draft.network.stretches[number]) for number in lanes]
@@ -129,7 +129,7 @@ def _raised(place: Sequence[float] | F64, by_m: float) -> F64:
     return np.array([place[0], place[1], place[2] + by_m])
 
 
-def _add_bulbs(draft: Draft, device: Device, bottom: F64, light: int) -> None:
+def _add_bulbs(draft: LaneletDraft, device: Device, bottom: F64, light: int) -> None:
     """Add the way of a light's bulbs, from the top down."""
     height_m = 2.0 * HEAD_HALF_M[2]
     rises = [height_m * (2 * (3 - nth) - 1) / 6.0 for nth in range(3)]
@@ -141,7 +141,9 @@ def _add_bulbs(draft: Draft, device: Device, bottom: F64, light: int) -> None:
     draft.bulbs_of[light] = way
 
 
-def _add_lights(draft: Draft, devices: list[Device], lines: dict[tuple[int, bool], int], ways: dict[str, int]) -> None:
+def _add_lights(
+    draft: LaneletDraft, devices: list[Device], lines: dict[tuple[int, bool], int], ways: dict[str, int]
+) -> None:
     """Add one element for each stop line and set of movements, with all lights over it."""
     groups: dict[tuple[tuple[int, bool] | None, tuple[int, ...]], list[Device]] = defaultdict(list)
     for device in devices:
@@ -163,7 +165,7 @@ def _add_lights(draft: Draft, devices: list[Device], lines: dict[tuple[int, bool
 
 
 def _add_stop_signs(
-    draft: Draft, devices: list[Device], lines: dict[tuple[int, bool], int], ways: dict[str, int]
+    draft: LaneletDraft, devices: list[Device], lines: dict[tuple[int, bool], int], ways: dict[str, int]
 ) -> None:
     """Add one element for each stop line with a sign; the lanes before the line refer to it."""
     groups: dict[tuple[int, bool], list[Device]] = defaultdict(list)
@@ -183,7 +185,7 @@ def _add_stop_signs(
 
 
 def _add_all_way_stop(
-    draft: Draft,
+    draft: LaneletDraft,
     junction: int,
     movements: list[Movement],
     stops: list[Device],
@@ -205,7 +207,7 @@ def _add_all_way_stop(
 
 
 def _add_right_of_way(
-    draft: Draft, junction: int, waiting: dict[int, list[int]], devices: list[Device], ways: dict[str, int]
+    draft: LaneletDraft, junction: int, waiting: dict[int, list[int]], devices: list[Device], ways: dict[str, int]
 ) -> None:
     """Add one element for each way that others let go first; it alone refers to it, as Autoware wants (vm-03-11)."""
     for first, others in waiting.items():

@@ -11,20 +11,20 @@ from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import OpenDrive
 from linden_maps.lanelet2 import bounds as sides_of
 from linden_maps.lanelet2.areas import ring_of
-from linden_maps.lanelet2.bus_stops import Stop, add_bus_stops
+from linden_maps.lanelet2.bus_stops import KerbStop, add_bus_stops
 from linden_maps.lanelet2.controls import add_controls
 from linden_maps.lanelet2.crosswalks import crossed, crosswalks_of
-from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.draft import LaneletDraft
 from linden_maps.lanelet2.kerbs import loose_kerbs
 from linden_maps.lanelet2.markings import KERB, tags_of_sides
-from linden_maps.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
+from linden_maps.lanelet2.model import DIGITS, Bounds, LaneletMap, LaneletPoint, LaneletWay, Member, Relation
 from linden_maps.lanelet2.movements import Movement, movements_of
 from linden_maps.lanelet2.roundabouts import FORMAT_VERSION, add_roundabouts
 from linden_maps.lanelet2.stretches import (
     ROAD,
     SHOULDER,
     WALKWAY,
-    Network,
+    LaneletNetwork,
     Side,
     Stretch,
     intersections,
@@ -36,17 +36,17 @@ UNKNOWN_SPEED_KMH = 50.0
 _KMH_PER_MPS = 3.6
 
 
-class Converted(NamedTuple):
+class ConvertedMap(NamedTuple):
     """A Lanelet2 map, and what a reader of it should know."""
 
     lanelet_map: LaneletMap
-    network: Network
+    network: LaneletNetwork
     lanelet_of: tuple[int, ...]  # id of the lanelet of each stretch of the network
     lost_links: int
     largest_gap_m: float
     without_limit: int
     signals_without_lane: int
-    lost_stops: tuple[Stop, ...] = ()
+    lost_stops: tuple[KerbStop, ...] = ()
     shared: frozenset[Side] = frozenset()  # sides of two ways through a junction that are one way of the map
 
 
@@ -59,13 +59,13 @@ class Wanted(NamedTuple):
 
     pairwise_priority: bool = False
     roundabouts: bool = False
-    stops: tuple[Stop, ...] = ()
+    stops: tuple[KerbStop, ...] = ()
 
 
 PLAIN = Wanted()
 
 
-def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
+def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> ConvertedMap:
     """Return the Lanelet2 map of an OpenDRIVE map.
 
     Raises:
@@ -75,7 +75,7 @@ def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
     network = network_of(opendrive)
     if not any(stretch.subtype == ROAD for stretch in network.stretches):
         raise UserError("the map has no driving lane at least 0.3 m wide, so it makes no lanelet")
-    draft = Draft(tables, network)
+    draft = LaneletDraft(tables, network)
     kerbs = loose_kerbs(tables, network)
     laid = sides_of.lay(tables, network, kerbs, draft.target, draft.ids)
     draft.way_of, draft.nodes_of = laid.way_of, laid.nodes_of
@@ -97,7 +97,7 @@ def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
     lost_stops = add_bus_stops(draft, wanted.stops)
     _finish(draft)
     draft.target.geo_reference, draft.target.name = opendrive.geo_reference, opendrive.name
-    return Converted(
+    return ConvertedMap(
         draft.target,
         network,
         tuple(draft.lanelet_of),
@@ -110,7 +110,7 @@ def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
     )
 
 
-def _add_lanelets(draft: Draft) -> int:
+def _add_lanelets(draft: LaneletDraft) -> int:
     """Give every stretch an id, its tags and its sides; return how many road lanelets the map gives no limit."""
     unlimited = 0
     limits = _limits_kmh(draft.tables, draft.network)
@@ -137,13 +137,13 @@ def _add_lanelets(draft: Draft) -> int:
     return unlimited
 
 
-def _nodes_along(draft: Draft, stretch: Stretch, side: Side) -> tuple[int, ...]:
+def _nodes_along(draft: LaneletDraft, stretch: Stretch, side: Side) -> tuple[int, ...]:
     """Return a side's nodes in the direction of travel."""
     nodes = draft.nodes_of[side]
     return nodes if stretch.forward else nodes[::-1]
 
 
-def _limits_kmh(tables: Tables, network: Network) -> list[float]:
+def _limits_kmh(tables: Tables, network: LaneletNetwork) -> list[float]:
     """Return the speed limit of each stretch at its middle, nan where the map gives none."""
     row = np.array([stretch.pieces[0].row for stretch in network.stretches])
     middle = np.array([(s.pieces[0].start_m + s.pieces[0].end_m) / 2.0 for s in network.stretches])
@@ -153,9 +153,9 @@ def _limits_kmh(tables: Tables, network: Network) -> list[float]:
 
 def _add_junctions(
     opendrive: OpenDrive,
-    draft: Draft,
+    draft: LaneletDraft,
     movements: dict[int, list[Movement]],
-    kerbs: dict[Side, tuple[sides_of.Edge, ...]],
+    kerbs: dict[Side, tuple[sides_of.LaneEdge, ...]],
 ) -> None:
     """Tag the ways through each junction with their turn, and add its area."""
     corner: dict[int, list[tuple[int, ...]]] = defaultdict(list)
@@ -179,7 +179,7 @@ def _add_junctions(
         if ring:
             tags = {"type": "intersection_area", "area": "yes"}
             name = opendrive.junction_by_id[junction].name if junction in opendrive.junction_by_id else ""
-            draft.target.ways[area] = Way(ring, {**tags, "name": name} if name else tags)
+            draft.target.ways[area] = LaneletWay(ring, {**tags, "name": name} if name else tags)
         for movement in found:
             tags = draft.tags[draft.lanelet_of[movement.stretch]]
             tags["turn_direction"] = movement.direction
@@ -187,15 +187,15 @@ def _add_junctions(
                 tags["intersection_area"] = str(area)
 
 
-def _is_outside(draft: Draft, number: int, junction: int) -> bool:
+def _is_outside(draft: LaneletDraft, number: int, junction: int) -> bool:
     return draft.network.stretches[number].junction_id != junction
 
 
-def _sides(draft: Draft, numbers: dict[int, None]) -> list[Bounds]:
+def _sides(draft: LaneletDraft, numbers: dict[int, None]) -> list[Bounds]:
     return [draft.bounds[draft.lanelet_of[number]] for number in numbers]
 
 
-def _add_crosswalks(draft: Draft) -> None:
+def _add_crosswalks(draft: LaneletDraft) -> None:
     """Add the lanelet, polygon and regulatory elements of every crosswalk: one element for each stop line before it."""
     walks = crosswalks_of(draft.tables)
     roads = {
@@ -235,7 +235,7 @@ def _add_crosswalks(draft: Draft) -> None:
 _LINE_REACH_M = 8.0
 
 
-def _lines_of_lanelets(draft: Draft) -> dict[int, list[int]]:
+def _lines_of_lanelets(draft: LaneletDraft) -> dict[int, list[int]]:
     """Return the stop lines that lanelets refer to already."""
     lines: dict[int, list[int]] = {}
     for lanelet, elements in draft.elements.items():
@@ -255,7 +255,7 @@ def _lines_of_lanelets(draft: Draft) -> dict[int, list[int]]:
     }
 
 
-def _line_before(draft: Draft, lines: list[int], outline: F64) -> int:
+def _line_before(draft: LaneletDraft, lines: list[int], outline: F64) -> int:
     """Return the stop line near a crosswalk, 0 where there is none."""
     best = (_LINE_REACH_M, 0)
     for line in lines:
@@ -264,11 +264,13 @@ def _line_before(draft: Draft, lines: list[int], outline: F64) -> int:
     return best[1]
 
 
-def _finish(draft: Draft) -> None:
+def _finish(draft: LaneletDraft) -> None:
     """Write the relations of all lanelets, now that their elements are known; round places as files have them."""
     nodes = draft.target.nodes
     for node, place in nodes.items():
-        nodes[node] = Node(round(place[0], DIGITS), round(place[1], DIGITS), round(place[2], DIGITS), place.tags)
+        nodes[node] = LaneletPoint(
+            round(place[0], DIGITS), round(place[1], DIGITS), round(place[2], DIGITS), place.tags
+        )
     elements = dict(draft.target.relations)
     draft.target.relations.clear()
     for lanelet, stretch in zip(draft.lanelet_of, draft.network.stretches, strict=True):

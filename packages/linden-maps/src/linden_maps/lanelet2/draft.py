@@ -4,14 +4,14 @@ from collections import defaultdict
 
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
-from linden_maps.lanelet2.model import Bounds, Ids, LaneletMap, Member, Node, Relation, Way
-from linden_maps.lanelet2.stretches import Network, Side
+from linden_maps.lanelet2.model import Bounds, Ids, LaneletMap, LaneletPoint, LaneletWay, Member, Relation
+from linden_maps.lanelet2.stretches import LaneletNetwork, Side
 
 
-class Draft:
+class LaneletDraft:
     """A map in the making: lanelets by stretch, with their regulatory elements in order."""
 
-    def __init__(self, tables: Tables, network: Network) -> None:
+    def __init__(self, tables: Tables, network: LaneletNetwork) -> None:
         self.tables, self.network = tables, network
         self.target, self.ids = LaneletMap(), Ids()
         self.tags: dict[int, dict[str, str]] = {}
@@ -27,10 +27,10 @@ class Draft:
         nodes = []
         for nth, point in enumerate(points.tolist()):
             node = self.ids.new("node", *key, nth)
-            self.target.nodes[node] = Node(*point)
+            self.target.nodes[node] = LaneletPoint(*point)
             nodes.append(node)
         way = (self.ids.small if small_id else self.ids.new)("way", *key)
-        self.target.ways[way] = Way(tuple(nodes), tags)
+        self.target.ways[way] = LaneletWay(tuple(nodes), tags)
         return way
 
     def add_element(self, subtype: str, members: list[Member], lanelets: list[int], *key: object) -> int:

@@ -3,12 +3,12 @@
 from linden.maps.opendrive.evaluate.strips import sections_before
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Lane
-from linden_maps.lanelet2.bounds import Edge
+from linden_maps.lanelet2.bounds import LaneEdge
 from linden_maps.lanelet2.markings import beside_boundary, is_step
-from linden_maps.lanelet2.stretches import WALKWAY, Network, Side, subtype_of
+from linden_maps.lanelet2.stretches import WALKWAY, LaneletNetwork, Side, subtype_of
 
 
-def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]]:
+def loose_kerbs(tables: Tables, network: LaneletNetwork) -> dict[Side, tuple[LaneEdge, ...]]:
     """Return every edge of a raised lane, beside a paved one or at the road's edge, that is no side of a lanelet."""
     taken = {
         (side.road, piece[0], piece[1])
@@ -18,7 +18,7 @@ def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]
         for piece in side.pieces
     }
     before = sections_before(tables)
-    found: dict[Side, tuple[Edge, ...]] = {}
+    found: dict[Side, tuple[LaneEdge, ...]] = {}
     for index, road in enumerate(tables.roads):
         for number, section in enumerate(road.sections):
             for boundary in {lane.id for lane in section.lanes}:
@@ -29,7 +29,7 @@ def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]
                 row = tables.lane_row[index, number, lane.id]
                 at = int(before[index]) + number
                 outer = lane.id == boundary
-                edge = Edge(row, outer, at, section.s_m, section.end_m, lifted=_is_paved(lane))
+                edge = LaneEdge(row, outer, at, section.s_m, section.end_m, lifted=_is_paved(lane))
                 found[Side(index, "road", ((number, boundary, section.s_m, section.end_m),))] = (edge,)
     return found
 

@@ -7,7 +7,7 @@ as Autoware wants them there (vm-03-03).
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Lane, RoadMark
 from linden_maps.lanelet2.model import Tags
-from linden_maps.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch
+from linden_maps.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, LaneletNetwork, Side, Stretch
 
 KERB_M = 0.03
 """A step in height from this on is a kerb."""
@@ -23,7 +23,7 @@ _PAINT = {
 KERB = {"type": "road_border", "subtype": "curbstone"}
 
 
-def tags_of_sides(tables: Tables, network: Network) -> dict[Side, Tags]:
+def tags_of_sides(tables: Tables, network: LaneletNetwork) -> dict[Side, Tags]:
     """Return the tags of every side's way."""
     users: dict[Side, list[Stretch]] = {}
     for stretch in network.stretches:

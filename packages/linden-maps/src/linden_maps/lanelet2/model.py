@@ -29,7 +29,7 @@ DIGITS = 4
 """Of a place in m: a tenth of a millimetre, in memory as in files, so that both are the same map."""
 
 
-class Node(NamedTuple):
+class LaneletPoint(NamedTuple):
     """A point in m."""
 
     x_m: float
@@ -38,7 +38,7 @@ class Node(NamedTuple):
     tags: Tags = MappingProxyType({})
 
 
-class Way(NamedTuple):
+class LaneletWay(NamedTuple):
     """A polyline; a closed area where its tags say ``area=yes``."""
 
     nodes: tuple[int, ...]
@@ -68,8 +68,8 @@ class Relation(NamedTuple):
 class LaneletMap:
     """Primitives by id, in the order in which they are written."""
 
-    nodes: dict[int, Node] = field(default_factory=dict)
-    ways: dict[int, Way] = field(default_factory=dict)
+    nodes: dict[int, LaneletPoint] = field(default_factory=dict)
+    ways: dict[int, LaneletWay] = field(default_factory=dict)
     relations: dict[int, Relation] = field(default_factory=dict)
     geo_reference: str = ""
     name: str = ""

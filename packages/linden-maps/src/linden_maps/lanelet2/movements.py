@@ -10,7 +10,7 @@ import numpy as np
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Junction
-from linden_maps.lanelet2.stretches import ROAD, Network
+from linden_maps.lanelet2.stretches import ROAD, LaneletNetwork
 
 STRAIGHT_RAD = math.radians(30.0)
 """A way that turns less than this goes straight on."""
@@ -46,7 +46,7 @@ class Movement(NamedTuple):
         return "left" if self.turn_rad > 0.0 else "right"
 
 
-def movements_of(tables: Tables, network: Network) -> dict[int, list[Movement]]:
+def movements_of(tables: Tables, network: LaneletNetwork) -> dict[int, list[Movement]]:
     """Return the ways through each junction."""
     found = [n for n, stretch in enumerate(network.stretches) if stretch.junction_id >= 0 and stretch.subtype == ROAD]
     origins: dict[int, set[int]] = defaultdict(set)
@@ -72,7 +72,7 @@ def movements_of(tables: Tables, network: Network) -> dict[int, list[Movement]]:
     return dict(junctions)
 
 
-def _middles(tables: Tables, network: Network, numbers: list[int]) -> list[tuple[F64, float, F64]]:
+def _middles(tables: Tables, network: LaneletNetwork, numbers: list[int]) -> list[tuple[F64, float, F64]]:
     """Return the middle line, mean width and headings of stretches in their direction of travel."""
     rows, places, counts = [], [], []
     for number in numbers:

@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from linden.errors import UserError
-from linden_maps.lanelet2.model import DIGITS, LaneletMap, Member, Node, Relation, Way
+from linden_maps.lanelet2.model import DIGITS, LaneletMap, LaneletPoint, LaneletWay, Member, Relation
 from linden_maps.lanelet2.projection import NOWHERE, Projection, projection_of
 from linden_maps.osm_xml import osm_root, tags_of
 
@@ -65,7 +65,7 @@ def projector_info(lanelet_map: LaneletMap, *, transverse_mercator: bool = False
     ).encode()
 
 
-class _Reader:
+class _LaneletReader:
     """Reads one file; complaints name it and the line."""
 
     def __init__(self, name: str) -> None:
@@ -108,14 +108,14 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
     """
     too_large = f"{name} has more than 1 GiB; such maps are not read"
     root = osm_root(data, name, kind="a Lanelet2 map", most_bytes=_MOST_BYTES, too_large=too_large, huge=True)
-    reader = _Reader(name)
+    reader = _LaneletReader(name)
     found = LaneletMap(geo_reference=geo_reference)
     nodes = [node for node in root.iterchildren("node") if node.get("action") != "delete"]
     projection = projection_of(geo_reference) or _first_place(reader, nodes)
     for node in nodes:
         number, tags = reader.number(node, "id"), tags_of(node)
         ele = reader.real(node, tags.pop("ele", "0"), "ele")
-        found.nodes[_fresh(reader, node, number, found.nodes)] = Node(
+        found.nodes[_fresh(reader, node, number, found.nodes)] = LaneletPoint(
             *_place(reader, node, tags, projection), ele, tags
         )
     for node in root.iterchildren("way"):
@@ -127,7 +127,7 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
         if missing is not None or not refs:
             what = f"names node {missing}, which is not there" if refs else "has no node"
             raise reader.refuse(node, f"way {number} {what}")
-        found.ways[number] = Way(refs, tags_of(node))
+        found.ways[number] = LaneletWay(refs, tags_of(node))
     for node in root.iterchildren("relation"):
         if node.get("action") == "delete":
             continue
@@ -141,20 +141,20 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
     return found
 
 
-def _fresh(reader: _Reader, node: Any, number: int, known: dict[int, Any]) -> int:  # noqa: ANN401 - an element of lxml
+def _fresh(reader: _LaneletReader, node: Any, number: int, known: dict[int, Any]) -> int:  # noqa: ANN401 - an element of lxml
     if number in known:
         raise reader.refuse(node, f"{node.tag} {number} stands twice")
     return number
 
 
-def _first_place(reader: _Reader, nodes: list[Any]) -> Projection:
+def _first_place(reader: _LaneletReader, nodes: list[Any]) -> Projection:
     for node in nodes:
         if node.find("tag[@k='local_x']") is None:
             return Projection(*_degrees(reader, node), 1.0, 0.0, 0.0)
     return NOWHERE
 
 
-def _place(reader: _Reader, node: Any, tags: dict[str, str], projection: Projection) -> tuple[float, float]:  # noqa: ANN401
+def _place(reader: _LaneletReader, node: Any, tags: dict[str, str], projection: Projection) -> tuple[float, float]:  # noqa: ANN401
     if "local_x" in tags and "local_y" in tags:
         return reader.real(node, tags.pop("local_x"), "local_x"), reader.real(node, tags.pop("local_y"), "local_y")
     x_m, y_m = projection.metres(*_degrees(reader, node))
@@ -163,14 +163,14 @@ def _place(reader: _Reader, node: Any, tags: dict[str, str], projection: Project
     return x_m, y_m
 
 
-def _degrees(reader: _Reader, node: Any) -> tuple[float, float]:  # noqa: ANN401 - an element of lxml
+def _degrees(reader: _LaneletReader, node: Any) -> tuple[float, float]:  # noqa: ANN401 - an element of lxml
     latitude, longitude = (reader.real(node, node.get(key), key) for key in ("lat", "lon"))
     if abs(latitude) > 90.0 or abs(longitude) > 180.0:
         raise reader.refuse(node, f"latitude {latitude:g} and longitude {longitude:g} are no place on Earth")
     return latitude, longitude
 
 
-def _check_lanelets(reader: _Reader, root: Any, found: LaneletMap) -> None:  # noqa: ANN401 - an element of lxml
+def _check_lanelets(reader: _LaneletReader, root: Any, found: LaneletMap) -> None:  # noqa: ANN401 - an element of lxml
     """Raise UserError where a lanelet lacks a side."""
     elements = {int(node.get("id")): node for node in root.iterchildren("relation")}
     for number, lanelet in found.lanelets():

@@ -5,7 +5,7 @@ inside are ``internal``, the lanelets before it ``entry`` and the lanelets behin
 """
 
 from linden.maps.opendrive.model import OpenDrive
-from linden_maps.lanelet2.draft import Draft
+from linden_maps.lanelet2.draft import LaneletDraft
 from linden_maps.lanelet2.model import Member
 from linden_maps.lanelet2.movements import Movement
 
@@ -13,7 +13,7 @@ FORMAT_VERSION = "2"
 """Of a file with such elements; Autoware that knows format 1 alone does not load it."""
 
 
-def add_roundabouts(opendrive: OpenDrive, draft: Draft, movements: dict[int, list[Movement]]) -> None:
+def add_roundabouts(opendrive: OpenDrive, draft: LaneletDraft, movements: dict[int, list[Movement]]) -> None:
     """Add the element of every roundabout; the lanelets that lead in and those inside refer to it."""
     for junction, found in movements.items():
         record = opendrive.junction_by_id.get(junction)

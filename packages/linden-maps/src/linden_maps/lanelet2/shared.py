@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden.maps.opendrive.evaluate.pieces import F64
-from linden_maps.lanelet2.stretches import Network, Side
+from linden_maps.lanelet2.stretches import LaneletNetwork, Side
 
 NEAR_M = 0.5
 """Boundaries further apart than this are two; the shared one is their mean, so it lies within half of this of both."""
@@ -28,7 +28,7 @@ class Same(NamedTuple):
 
 
 def one_line(
-    network: Network, index: dict[Side, int], lines: list[F64], end_of: Callable[[int], int]
+    network: LaneletNetwork, index: dict[Side, int], lines: list[F64], end_of: Callable[[int], int]
 ) -> dict[int, Same]:
     """Return which sides become one with an earlier one, by number, and move the lines of both to their mean.
 
@@ -55,7 +55,7 @@ def one_line(
     return same
 
 
-def _beside(network: Network, index: dict[Side, int], end_of: Callable[[int], int]) -> dict[int, set[bool]]:
+def _beside(network: LaneletNetwork, index: dict[Side, int], end_of: Callable[[int], int]) -> dict[int, set[bool]]:
     """Return on which hands of each side of a way through a junction a lanelet lies: left (True) of it, or right.
 
     The side is seen from its lesser joint to its greater one, so that the hands of two sides can be compared.

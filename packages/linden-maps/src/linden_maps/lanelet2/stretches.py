@@ -39,7 +39,7 @@ _PLACES = 9
 """Where along a piece its width is looked at."""
 
 
-class Piece(NamedTuple):
+class LanePiece(NamedTuple):
     """A lane of one section, from ``start_m`` to ``end_m`` along its road."""
 
     section: int
@@ -62,7 +62,7 @@ class Stretch(NamedTuple):
 
     road: int  # index
     subtype: str
-    pieces: tuple[Piece, ...]  # in the order of s
+    pieces: tuple[LanePiece, ...]  # in the order of s
     forward: bool  # whether its traffic goes towards greater s
     junction_id: int
     left: Side
@@ -74,7 +74,7 @@ class Stretch(NamedTuple):
         return sum(piece.end_m - piece.start_m for piece in self.pieces)
 
 
-class Network(NamedTuple):
+class LaneletNetwork(NamedTuple):
     """All lanelets to be, and which road lanelets follow which."""
 
     stretches: tuple[Stretch, ...]
@@ -87,7 +87,7 @@ def subtype_of(kind: LaneType) -> str | None:
     return next((subtype for types, subtype in _SUBTYPES if kind & types), None)
 
 
-def intersections(network: Network) -> set[int]:
+def intersections(network: LaneletNetwork) -> set[int]:
     """Return the junctions that traffic enters from two roads or more; ways of one road alone do not meet."""
     roads: dict[int, set[tuple[int, bool]]] = defaultdict(set)
     for before, after in zip(network.stretches, network.successors, strict=True):
@@ -98,7 +98,7 @@ def intersections(network: Network) -> set[int]:
     return {junction for junction, entered in roads.items() if len(entered) > 1}
 
 
-def network_of(opendrive: OpenDrive) -> Network:
+def network_of(opendrive: OpenDrive) -> LaneletNetwork:
     """Return what lanelets a map makes."""
     tables = tables_of(opendrive)
     left_out: dict[str, int] = {}
@@ -159,7 +159,7 @@ def _widths_m(tables: Tables, stretches: list[Stretch]) -> list[float]:
 
 def _joined(
     opendrive: OpenDrive, tables: Tables, chosen: list[tuple[Stretch, bool]], left_out: dict[str, int]
-) -> Network:
+) -> LaneletNetwork:
     """Link the stretches of roads; links run through what is too short or too narrow to be a lanelet (False)."""
     found = [stretch for stretch, _ in chosen]
     entry: dict[int, int] = {}
@@ -180,10 +180,10 @@ def _joined(
     kept = [number for number, (_, is_lanelet) in enumerate(chosen) if is_lanelet]
     place = {number: new for new, number in enumerate(kept)}
     successors = tuple(tuple(place[far] for far in _through(number, after, place)) for number in kept)
-    return Network(tuple(found[number] for number in kept), successors, left_out)
+    return LaneletNetwork(tuple(found[number] for number in kept), successors, left_out)
 
 
-def _next_cut(found: list[Stretch], stretch: Stretch, last: Piece, after: list[tuple[int, ...]]) -> list[int]:
+def _next_cut(found: list[Stretch], stretch: Stretch, last: LanePiece, after: list[tuple[int, ...]]) -> list[int]:
     """Return the stretch that goes on in the same lane of the same section."""
     number = len(after)
     for other in (number + 1, number - 1):
@@ -224,7 +224,7 @@ def _of_road(tables: Tables, index: int, road: Road) -> Iterator[Stretch]:
             spans = pairwise(cuts) if len(chain) == 1 else [(section.s_m, section.end_m)]
             for start_m, end_m in spans:
                 pieces = [
-                    Piece(
+                    LanePiece(
                         at,
                         lane_id,
                         start_m if len(chain) == 1 else road.sections[at].s_m,
@@ -236,7 +236,7 @@ def _of_road(tables: Tables, index: int, road: Road) -> Iterator[Stretch]:
                 yield _stretch(index, road, subtype, tuple(pieces))
 
 
-def _stretch(index: int, road: Road, subtype: str, pieces: tuple[Piece, ...]) -> Stretch:
+def _stretch(index: int, road: Road, subtype: str, pieces: tuple[LanePiece, ...]) -> Stretch:
     lane_id = pieces[0].lane_id
     forward = is_forward(road, lane_id)
     if subtype == SHOULDER and _is_across_the_axis(road.sections[pieces[0].section], lane_id):

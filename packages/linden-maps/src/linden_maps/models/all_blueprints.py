@@ -4,7 +4,7 @@ import lzma
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.blueprints.library import ANIMALS, Blueprint, BlueprintLibrary, Kind
+from linden.blueprints.library import ANIMALS, Blueprint, BlueprintKind, BlueprintLibrary
 from linden.scenery.actors.actor_meshes import BlueprintMeshes, Part, encoded
 from linden.scenery.mesh import Mesh
 from linden_maps.models.animals import animal
@@ -51,17 +51,17 @@ def write_asset(path: Path) -> None:
 
 def _shapes(blueprint: Blueprint) -> dict[str, list[Shape]]:
     """Return the parts of a blueprint's actors by the attribute value that changes their look, "" for the plain one."""
-    if blueprint.kind is Kind.VEHICLE:
+    if blueprint.kind is BlueprintKind.VEHICLE:
         return _vehicle(blueprint)
     if blueprint.definition.id.startswith(ANIMALS):
         return {"": animal(blueprint)}
-    if blueprint.kind is Kind.WALKER:
+    if blueprint.kind is BlueprintKind.WALKER:
         can_sit = any(
             "true" in a.recommended_values for a in blueprint.definition.attributes if a.id == "use_wheelchair"
         )
         seated = {"true": in_wheelchair(blueprint, wheelchair())} if can_sit else {}
         return {"": walker(blueprint), **seated}
-    return {"": prop(blueprint)} if blueprint.kind is Kind.PROP else {}
+    return {"": prop(blueprint)} if blueprint.kind is BlueprintKind.PROP else {}
 
 
 def _vehicle(blueprint: Blueprint) -> dict[str, list[Shape]]:

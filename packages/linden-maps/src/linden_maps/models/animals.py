@@ -6,7 +6,7 @@ The box ends at the shoulder, as the sources of sizes measure it; so the neck is
 from linden.blueprints.library import Blueprint
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden_maps.models.solids import Look, Shape, ball, both_sides, rod, tagged, tube
+from linden_maps.models.solids import FaceLook, Shape, ball, both_sides, rod, tagged, tube
 
 _COATS = {"deer": (134, 98, 66), "dog": (196, 160, 104)}
 _COAT = (120, 96, 72)
@@ -16,11 +16,11 @@ def animal(blueprint: Blueprint) -> list[Shape]:
     """Return an animal as one part; the origin is the middle of its box, the nose ahead."""
     coat = _COATS.get(blueprint.definition.id.rsplit(".", maxsplit=1)[1], _COAT)
     half_m = blueprint.box.extent
-    figure = _figure(half_m.x, half_m.y, half_m.z, Look(Material.PLAIN, coat))
+    figure = _figure(half_m.x, half_m.y, half_m.z, FaceLook(Material.PLAIN, coat))
     return [Shape(tagged(figure, SemanticTag.DYNAMIC), 0)]
 
 
-def _figure(x: float, y: float, z: float, look: Look) -> Mesh:
+def _figure(x: float, y: float, z: float, look: FaceLook) -> Mesh:
     """Return trunk, neck, head, ears, tail and legs in a box of these half sizes."""
     head_m = (0.8 * x, 0.0, 0.7 * z)
     parts = [

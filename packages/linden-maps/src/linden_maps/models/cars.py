@@ -18,7 +18,7 @@ from linden_maps.models.fittings import (
     underside,
     wheel,
 )
-from linden_maps.models.hull import PROUD_M, Frame, Silhouette, half_width, hull, silhouettes, top
+from linden_maps.models.hull import PROUD_M, BodyFrame, Silhouette, half_width, hull, silhouettes, top
 from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
@@ -30,7 +30,7 @@ from linden_maps.models.solids import (
     STEEL,
     TAIL,
     TRIM,
-    Look,
+    FaceLook,
     Shape,
     both_sides,
     box,
@@ -43,13 +43,13 @@ _BAR_M = 0.13
 """Height of the bar of lights on a roof."""
 
 
-def frame_of(blueprint: Blueprint, *, roof_m: float, mirrors_m: float) -> Frame:
+def frame_of(blueprint: Blueprint, *, roof_m: float, mirrors_m: float) -> BodyFrame:
     """Return the frame of a body with a roof at ``roof_m`` and mirrors that reach ``mirrors_m`` beyond it."""
     assert blueprint.vehicle is not None
     hubs, (middle, half, *_) = blueprint.vehicle.wheel_offsets_m, blueprint.box
     axles = tuple(sorted({hub.x for hub in hubs}))
     rear, front = middle.x - half.x + PROUD_M, middle.x + half.x - PROUD_M
-    return Frame(rear, front, half.y - mirrors_m, roof_m, axles, hubs[0].z)
+    return BodyFrame(rear, front, half.y - mirrors_m, roof_m, axles, hubs[0].z)
 
 
 def car(blueprint: Blueprint) -> list[Shape]:
@@ -80,7 +80,7 @@ def wheels(blueprint: Blueprint, half_width_m: float) -> list[Shape]:
     return made
 
 
-_AMBER = Look(Material.PLAIN, (230, 150, 30))
+_AMBER = FaceLook(Material.PLAIN, (230, 150, 30))
 
 
 def shuttle(blueprint: Blueprint) -> list[Shape]:
@@ -94,7 +94,7 @@ def shuttle(blueprint: Blueprint) -> list[Shape]:
     ]
 
 
-def _doors(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def _doors(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return the frames of the doors' leaves, the rail that they slide on, and a step below them."""
     made: list[Mesh] = []
     wide = frame.half_width
@@ -113,7 +113,7 @@ def _doors(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return made
 
 
-def _ends(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def _ends(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return lamps, plate and destination of either end."""
     made: list[Mesh] = []
     wide = float(half_width(shape, frame, frame.front))
@@ -139,7 +139,7 @@ def _ends(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return made
 
 
-def _sensors(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def _sensors(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return the laser scanners at the corners and the antenna's dome on the roof."""
     puck = lathe([-0.05, 0.05], [0.055, 0.055], 10, BLACK)
     made = []

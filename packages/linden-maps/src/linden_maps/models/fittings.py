@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from linden.scenery.mesh import Material, Mesh, join
-from linden_maps.models.hull import F64, PROUD_M, Frame, Silhouette, half_width, ring_heights, top
+from linden_maps.models.hull import F64, PROUD_M, BodyFrame, Silhouette, half_width, ring_heights, top
 from linden_maps.models.solids import (
     BEACON_BLUE,
     BEACON_RED,
@@ -27,7 +27,7 @@ from linden_maps.models.solids import (
     STEEL,
     TAIL,
     TRIM,
-    Look,
+    FaceLook,
     both_sides,
     box,
     faces_of,
@@ -72,7 +72,7 @@ def spoked_wheel(radius_m: float, width_m: float, spokes: int, tag: int) -> Mesh
     return tagged(join(parts), tag)
 
 
-def hoop(radius_m: float, thickness_m: float, look: Look) -> Mesh:
+def hoop(radius_m: float, thickness_m: float, look: FaceLook) -> Mesh:
     """Return a ring about the y axis: round, of ``thickness_m`` radius itself."""
     rings = []
     for angle in np.arange(_SIDES + 1) * (math.tau / _SIDES):
@@ -82,19 +82,19 @@ def hoop(radius_m: float, thickness_m: float, look: Look) -> Mesh:
     return loft(np.array(rings), look, look, look)
 
 
-_TAXI_SIGN = Look(Material.PLAIN, (240, 220, 90))
+_TAXI_SIGN = FaceLook(Material.PLAIN, (240, 220, 90))
 _SHORTEST_BONNET_M = 0.4
 _TAIL_LAMP_M = 0.09
 """Width of an upright tail lamp."""
 
 
-def plaque(x_m: float, y_m: tuple[float, float], z_m: tuple[float, float], look: Look) -> Mesh:
+def plaque(x_m: float, y_m: tuple[float, float], z_m: tuple[float, float], look: FaceLook) -> Mesh:
     """Return a thin plate on a front (x > 0) or rear end at ``x_m``, standing off it a little."""
     out = PROUD_M if x_m > 0.0 else -PROUD_M
     return box((min(x_m - out, x_m + out), y_m[0], z_m[0]), (max(x_m - out, x_m + out), y_m[1], z_m[1]), look)
 
 
-def pair(x_m: float, y_m: tuple[float, float], z_m: tuple[float, float], left: Look, right: Look) -> list[Mesh]:
+def pair(x_m: float, y_m: tuple[float, float], z_m: tuple[float, float], left: FaceLook, right: FaceLook) -> list[Mesh]:
     """Return two plaques, mirrored; ``y_m`` is the right one's."""
     return [plaque(x_m, y_m, z_m, right), plaque(x_m, (-y_m[1], -y_m[0]), z_m, left)]
 
@@ -106,7 +106,7 @@ def round_lamps(x_m: float, y_m: float, z_m: float, radius_m: float) -> list[Mes
     return [moved(mesh, (x_m, side * y_m, z_m)) for side in (-1.0, 1.0) for mesh in (lamp, glass)]
 
 
-def underside(frame: Frame) -> Mesh:
+def underside(frame: BodyFrame) -> Mesh:
     """Return what is dark beneath a car and keeps one from looking through its arches."""
     low, inset = 0.55 * frame.wheel_radius, 0.35
     high = 2.0 * frame.wheel_radius
@@ -115,7 +115,7 @@ def underside(frame: Frame) -> Mesh:
     )
 
 
-def cockpit(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def cockpit(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return what a camera in the driver's seat sees of the car: the dashboard and a bonnet of its own.
 
     Casters that let a sensor look out through the back of its carrier's faces show no bonnet but this one, which lies
@@ -133,7 +133,7 @@ def cockpit(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return [*made, loft(rings, PAINT, PAINT, PAINT)]
 
 
-def front(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def front(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return grille, plate, blinkers, and lamps where they do not reach round the corners."""
     x, wide = frame.front, float(half_width(shape, frame, frame.front))
     flank, crease, waist = ring_heights(shape, frame, x)
@@ -153,7 +153,7 @@ def front(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return made
 
 
-def rear(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def rear(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return plate, lamps and the third brake light."""
     x, wide = frame.rear, float(half_width(shape, frame, frame.rear))
     flank, crease, waist = ring_heights(shape, frame, x)
@@ -174,7 +174,7 @@ def rear(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return made
 
 
-def mirrors(shape: Silhouette, frame: Frame, reach_m: float) -> list[Mesh]:
+def mirrors(shape: Silhouette, frame: BodyFrame, reach_m: float) -> list[Mesh]:
     """Return two mirrors that reach ``reach_m`` from the middle."""
     x = float(frame.x(shape.side_glass[-1][1] - 0.035))
     waist = ring_heights(shape, frame, x)[2]
@@ -187,7 +187,7 @@ def mirrors(shape: Silhouette, frame: Frame, reach_m: float) -> list[Mesh]:
     return [mesh for part in (housing, glass, stem) for mesh in both_sides(part)]
 
 
-def handles(shape: Silhouette, frame: Frame) -> list[Mesh]:
+def handles(shape: Silhouette, frame: BodyFrame) -> list[Mesh]:
     """Return a handle at the rear end of each door."""
     made = []
     for low, _ in shape.side_glass[-2:]:
@@ -198,7 +198,7 @@ def handles(shape: Silhouette, frame: Frame) -> list[Mesh]:
     return made
 
 
-def on_the_roof(shape: Silhouette, frame: Frame, tall_m: float, *, taxi: bool) -> list[Mesh]:
+def on_the_roof(shape: Silhouette, frame: BodyFrame, tall_m: float, *, taxi: bool) -> list[Mesh]:
     """Return a taxi's sign, or a bar of blue and red lights."""
     x = float(frame.x(shape.top[np.argmax(shape.top[:, 1]), 0]))
     low, high = frame.roof - 0.01, frame.roof + tall_m

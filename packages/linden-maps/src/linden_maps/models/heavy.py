@@ -4,7 +4,7 @@ from linden.blueprints.library import Blueprint
 from linden.scenery.mesh import Material, Mesh, join
 from linden_maps.models.cars import frame_of, wheels
 from linden_maps.models.fittings import beacons, front, mirrors, pair, plaque, rear, underside
-from linden_maps.models.hull import PROUD_M, Frame, Silhouette, hull, ring_heights, silhouettes
+from linden_maps.models.hull import PROUD_M, BodyFrame, Silhouette, hull, ring_heights, silhouettes
 from linden_maps.models.solids import (
     BLACK,
     BLINKER_LEFT,
@@ -16,7 +16,7 @@ from linden_maps.models.solids import (
     STEEL,
     TAIL,
     TRIM,
-    Look,
+    FaceLook,
     Shape,
     both_sides,
     box,
@@ -27,9 +27,9 @@ from linden_maps.models.solids import (
 _MIRRORS_M = 0.2
 """How far the mirrors of trucks and buses stand off their flanks."""
 
-_WHITE = Look(Material.PLAIN, (236, 236, 234))
-_STRIPE = Look(Material.PLAIN, (190, 40, 30))
-_SHUTTER = Look(Material.METAL, (170, 172, 174))
+_WHITE = FaceLook(Material.PLAIN, (236, 236, 234))
+_STRIPE = FaceLook(Material.PLAIN, (190, 40, 30))
+_SHUTTER = FaceLook(Material.METAL, (170, 172, 174))
 
 
 def bus(blueprint: Blueprint) -> list[Shape]:
@@ -43,12 +43,12 @@ def bus(blueprint: Blueprint) -> list[Shape]:
     return [Shape(tagged(join(parts), blueprint.semantic_tags[0]), 0), *wheels(blueprint, frame.half_width)]
 
 
-def _cab(whole: Frame, length_m: float, roof_m: float) -> Frame:
+def _cab(whole: BodyFrame, length_m: float, roof_m: float) -> BodyFrame:
     """Return the frame of a cab of so much length at the front of a vehicle."""
     return whole._replace(rear=whole.front - length_m, roof=roof_m)
 
 
-def _truck(blueprint: Blueprint, shape: Silhouette, cab: Frame, whole: Frame, load: list[Mesh]) -> list[Shape]:
+def _truck(blueprint: Blueprint, shape: Silhouette, cab: BodyFrame, whole: BodyFrame, load: list[Mesh]) -> list[Shape]:
     """Return the parts of a truck: cab, chassis, load, wheels with mudguards, lamps."""
     half_y, hub_m = blueprint.box.extent.y, whole.wheel_radius
     chassis = box((whole.rear + 0.1, -0.45, 0.8 * hub_m), (cab.rear + 0.2, 0.45, 1.9 * hub_m), BLACK)
@@ -64,7 +64,7 @@ def _truck(blueprint: Blueprint, shape: Silhouette, cab: Frame, whole: Frame, lo
     return [Shape(tagged(join(parts), blueprint.semantic_tags[0]), 0), *wheels(blueprint, whole.half_width)]
 
 
-def _tail(frame: Frame) -> list[Mesh]:
+def _tail(frame: BodyFrame) -> list[Mesh]:
     """Return the bumper at the rear end of a truck, with lamps and plate."""
     x, wide, z = frame.rear, 0.92 * frame.half_width, 1.1 * frame.wheel_radius
     beam = box((x, -wide, z - 0.1), (x + 0.12, wide, z + 0.1), TRIM)
@@ -78,14 +78,14 @@ def _tail(frame: Frame) -> list[Mesh]:
     return made
 
 
-def _skirt(frame: Frame, high_m: float, look: Look) -> Mesh:
+def _skirt(frame: BodyFrame, high_m: float, look: FaceLook) -> Mesh:
     """Return what closes a body's rear below its floor, behind the bumper."""
     return box(
         (frame.rear + 0.13, -frame.half_width + 0.26, 0.45), (frame.rear + 0.2, frame.half_width - 0.26, high_m), look
     )
 
 
-def _over_axle(whole: Frame, look: Look) -> list[Mesh]:
+def _over_axle(whole: BodyFrame, look: FaceLook) -> list[Mesh]:
     """Return mudguards over the rear wheels."""
     x, r = whole.axles[0], whole.wheel_radius
     return both_sides(
@@ -188,7 +188,7 @@ def ambulance(blueprint: Blueprint) -> list[Shape]:
 
 def _cross(x_m: float, y_m: float, z_m: float) -> list[Mesh]:
     """Return a blue cross on either side, as ambulances show the star of life."""
-    blue = Look(Material.PLAIN, (30, 70, 170))
+    blue = FaceLook(Material.PLAIN, (30, 70, 170))
     upright = box((x_m - 0.07, y_m - 0.02, z_m - 0.22), (x_m + 0.07, y_m + 0.01, z_m + 0.22), blue)
     across = box((x_m - 0.22, y_m - 0.02, z_m - 0.07), (x_m + 0.22, y_m + 0.011, z_m + 0.07), blue)
     return [*both_sides(upright), *both_sides(across)]

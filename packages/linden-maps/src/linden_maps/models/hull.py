@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from linden.scenery.mesh import Mesh
 from linden.structured import StructuredArray
-from linden_maps.models.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
+from linden_maps.models.solids import GLASS, HEAD, PAINT, TAIL, TRIM, FaceLook, faces_of, loft
 
 F64 = NDArray[np.float64]
 Span = tuple[float, float]
@@ -83,7 +83,7 @@ _LAMPS_ROUND_CORNER = 0.045
 """The share of the length that lamps reach back along the flank."""
 
 
-class Frame(NamedTuple):
+class BodyFrame(NamedTuple):
     """Where a body lies in its vehicle's frame, m."""
 
     rear: float
@@ -102,7 +102,7 @@ class Frame(NamedTuple):
         return np.interp((np.asarray(x) - self.rear) / (self.front - self.rear), line[:, 0], line[:, 1])
 
 
-def hull(shape: Silhouette, frame: Frame, *, is_cab: bool = False) -> Mesh:
+def hull(shape: Silhouette, frame: BodyFrame, *, is_cab: bool = False) -> Mesh:
     """Return the body of a car, or a truck's cab, which has no lamps behind, without what is put upon it."""
     x = _stations(shape, frame)
     rear, front = (_end(look) for look in (TAIL, HEAD))
@@ -116,7 +116,7 @@ def hull(shape: Silhouette, frame: Frame, *, is_cab: bool = False) -> Mesh:
     return loft(_rings(shape, frame, x), sides, rear, front)
 
 
-def _end(lamps: Look) -> StructuredArray:
+def _end(lamps: FaceLook) -> StructuredArray:
     """Return how the strips (8,) of an end look: bumper, lamps, body."""
     looks = faces_of(PAINT, _BANDS)
     looks[:2] = faces_of(TRIM)
@@ -124,17 +124,17 @@ def _end(lamps: Look) -> StructuredArray:
     return looks
 
 
-def half_width(shape: Silhouette, frame: Frame, x: F64 | float) -> F64:
+def half_width(shape: Silhouette, frame: BodyFrame, x: F64 | float) -> F64:
     """Return how far the flanks are from the middle at x, m."""
     return frame.half_width * frame.at(shape.plan, x)
 
 
-def top(shape: Silhouette, frame: Frame, x: F64 | float) -> F64:
+def top(shape: Silhouette, frame: BodyFrame, x: F64 | float) -> F64:
     """Return the height of the middle line at x, m."""
     return frame.roof * frame.at(shape.top, x)
 
 
-def _stations(shape: Silhouette, frame: Frame) -> F64:
+def _stations(shape: Silhouette, frame: BodyFrame) -> F64:
     """Return where the rings are, from the rear to the front, m."""
     shares = [line[:, 0] for line in (shape.top, shape.plan)]
     edges = [shape.rear_window, shape.windscreen, *shape.side_glass]
@@ -152,13 +152,13 @@ def _stations(shape: Silhouette, frame: Frame) -> F64:
     return np.sort(kept)
 
 
-def ring_heights(shape: Silhouette, frame: Frame, x: float) -> tuple[float, float, float]:
+def ring_heights(shape: Silhouette, frame: BodyFrame, x: float) -> tuple[float, float, float]:
     """Return the heights of flank, crease and waist at x, m; there are lamps between the last two at either end."""
     _, flank, crease, waist, _ = (float(line[0]) for line in _lines(shape, frame, np.array([x])))
     return flank, crease, waist
 
 
-def _lines(shape: Silhouette, frame: Frame, x: F64) -> tuple[F64, F64, F64, F64, F64]:
+def _lines(shape: Silhouette, frame: BodyFrame, x: F64) -> tuple[F64, F64, F64, F64, F64]:
     """Return the heights (S,) of bottom, flank, crease, waist and top."""
     top_m = top(shape, frame, x)
     waist_m = np.minimum(frame.roof * frame.at(shape.waist, x), top_m - 0.03)
@@ -167,7 +167,7 @@ def _lines(shape: Silhouette, frame: Frame, x: F64) -> tuple[F64, F64, F64, F64,
     return bottom_m, flank_m, flank_m + 0.7 * (waist_m - flank_m), waist_m, top_m
 
 
-def _rings(shape: Silhouette, frame: Frame, x: F64) -> F64:
+def _rings(shape: Silhouette, frame: BodyFrame, x: F64) -> F64:
     """Return the rings (S, 16, 3), each from the right sill over the roof to the left one."""
     bottom_m, flank_m, crease_m, waist_m, top_m = _lines(shape, frame, x)
     wide_m = half_width(shape, frame, x)
@@ -181,7 +181,7 @@ def _rings(shape: Silhouette, frame: Frame, x: F64) -> F64:
     return np.concatenate([np.broadcast_to(x[:, None, None], (len(x), 2 * _BANDS, 1)), across], 2)
 
 
-def _bottom(shape: Silhouette, frame: Frame, x: F64) -> F64:
+def _bottom(shape: Silhouette, frame: BodyFrame, x: F64) -> F64:
     """Return how low the flanks reach: to the sills, and over the wheels."""
     bottom_m = frame.roof * frame.at(shape.bottom, x)
     arch_m = frame.wheel_radius + _ARCH_GAP_M
@@ -192,7 +192,7 @@ def _bottom(shape: Silhouette, frame: Frame, x: F64) -> F64:
     return bottom_m
 
 
-def _panes(shape: Silhouette, frame: Frame, x: F64) -> StructuredArray:
+def _panes(shape: Silhouette, frame: BodyFrame, x: F64) -> StructuredArray:
     """Return how the sides (S - 1, 16) of a hull look: painted, with windows; dark below."""
     middle = 0.5 * (x[1:] + x[:-1])
     looks = faces_of(PAINT, len(middle), 2 * _BANDS)
@@ -213,13 +213,13 @@ def _panes(shape: Silhouette, frame: Frame, x: F64) -> StructuredArray:
     return looks
 
 
-def _set(looks: StructuredArray, where: NDArray[np.bool_], band: int, look: Look) -> None:
+def _set(looks: StructuredArray, where: NDArray[np.bool_], band: int, look: FaceLook) -> None:
     """Give a band of either side a look."""
     for row in (band, 2 * _BANDS - 2 - band):
         looks[where, row] = faces_of(look)
 
 
-def _within(frame: Frame, x: F64, spans: tuple[tuple[float, float], ...]) -> NDArray[np.bool_]:
+def _within(frame: BodyFrame, x: F64, spans: tuple[tuple[float, float], ...]) -> NDArray[np.bool_]:
     inside = np.zeros(len(x), np.bool_)
     for low, high in spans:
         inside |= (x > frame.x(low)) & (x < frame.x(high))

@@ -12,15 +12,15 @@ import numpy as np
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden_maps.models.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
+from linden_maps.models.solids import FaceLook, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
 
 Colour = tuple[int, int, int]
 Make = TypeVar("Make", bound=Callable[..., Mesh])
 
-CLOTH = Look(Material.CLOTH, (120, 120, 125), painted=True)
+CLOTH = FaceLook(Material.CLOTH, (120, 120, 125), painted=True)
 """Clothes; what colour, the part says that the mesh belongs to."""
 
-_DARK = Look(Material.PLAIN, (30, 26, 24))
+_DARK = FaceLook(Material.PLAIN, (30, 26, 24))
 _LEGS_IN = 0.032
 ARMS_IN = 0.026
 """How much nearer to the middle than their bones the limbs are, in statures."""
@@ -64,15 +64,15 @@ def _limb(*matters: str) -> Callable[[Make], Make]:
     return remember
 
 
-def _skin(build: Build) -> Look:
-    return Look(Material.SKIN, build.skin)
+def _skin(build: Build) -> FaceLook:
+    return FaceLook(Material.SKIN, build.skin)
 
 
-def _leg(build: Build) -> Look:
-    return CLOTH if build.bare_legs is None else Look(Material.SKIN, build.bare_legs)
+def _leg(build: Build) -> FaceLook:
+    return CLOTH if build.bare_legs is None else FaceLook(Material.SKIN, build.bare_legs)
 
 
-def _ovals(rows: Sequence[tuple[float, float, float, float]], size_m: float, look: Look) -> Mesh:
+def _ovals(rows: Sequence[tuple[float, float, float, float]], size_m: float, look: FaceLook) -> Mesh:
     """Return a solid of ovals one over the other, each (height, half depth, half width, how far ahead)."""
     rings = []
     for height, depth, width, ahead in rows:
@@ -126,12 +126,12 @@ def head(build: Build) -> Mesh:
         )
     )
     if build.helmet is not None:
-        cover = Look(Material.PLAIN, build.helmet)
+        cover = FaceLook(Material.PLAIN, build.helmet)
         parts.append(
             ball((-0.004, 0.0, centre + 0.016), (deep + 0.014, wide + 0.014, crown - centre - 0.016), cover, sides=10)
         )
         return stretched(join(parts), (size, size, size))
-    hair = Look(Material.CLOTH, build.hair)
+    hair = FaceLook(Material.CLOTH, build.hair)
     top = crown - centre - 0.022
     parts.append(ball((-0.006, 0.0, centre + 0.022), (deep - 0.001, wide + 0.005, top), hair, sides=10, bands=6))
     parts.append(ball((-0.016, 0.0, centre + 0.004), (deep - 0.008, wide + 0.004, 0.8 * tall), hair, sides=8, bands=6))
@@ -191,7 +191,7 @@ def shin(build: Build, side: float) -> Mesh:
 @_limb("stature_m", "shoes")
 def foot(build: Build, side: float) -> Mesh:
     """Return a shoe; its sole is as low as the skeleton's feet stand over the ground."""
-    y, look = -side * _LEGS_IN, Look(Material.CLOTH, build.shoes)
+    y, look = -side * _LEGS_IN, FaceLook(Material.CLOTH, build.shoes)
     rings = [
         [(x, y - wide, -0.039), (x, y + wide, -0.039), (x, y + 0.8 * wide, high), (x, y - 0.8 * wide, high)]
         for x, wide, high in (
@@ -205,5 +205,5 @@ def foot(build: Build, side: float) -> Mesh:
     return loft(np.array(rings) * build.stature_m, look, look, look)
 
 
-def _scaled_tube(path: list[tuple[float, float, float]], radii: list[float], size_m: float, look: Look) -> Mesh:
+def _scaled_tube(path: list[tuple[float, float, float]], radii: list[float], size_m: float, look: FaceLook) -> Mesh:
     return tube((np.array(path) * size_m).tolist(), [size_m * radius for radius in radii], _SIDES, look)

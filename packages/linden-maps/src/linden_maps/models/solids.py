@@ -22,7 +22,7 @@ _NO_AREA_M2 = 1e-9
 """Triangles smaller than this have no direction: two of their corners coincide."""
 
 
-class Look(NamedTuple):
+class FaceLook(NamedTuple):
     """How a face meets light; ``colour`` is sRGB and, where ``painted``, stands in for the actor's own."""
 
     material: Material
@@ -31,13 +31,13 @@ class Look(NamedTuple):
     painted: bool = False
 
 
-def faces_of(look: Look, *shape: int) -> StructuredArray:
+def faces_of(look: FaceLook, *shape: int) -> StructuredArray:
     """Return an array of faces that look so; the tag is given to the whole body at the end (:func:`tagged`)."""
     return np.full(shape, _face(look), FACE)
 
 
 @lru_cache(maxsize=1024)
-def _face(look: Look) -> np.void:
+def _face(look: FaceLook) -> np.void:
     made = np.zeros(1, FACE)
     made["material"], made["colour"], made["lamp"], made["painted"], made["object"] = *look, NO_OBJECT
     face: np.void = made[0]
@@ -77,7 +77,7 @@ def inside_out(mesh: Mesh) -> Mesh:
 
 
 def loft(
-    rings_m: F64, look: Look | StructuredArray, first: Look | StructuredArray, last: Look | StructuredArray
+    rings_m: F64, look: FaceLook | StructuredArray, first: FaceLook | StructuredArray, last: FaceLook | StructuredArray
 ) -> Mesh:
     """Return the solid between rings (S, P, 3), each joined to the next; its ends are closed by strips.
 
@@ -91,7 +91,7 @@ def loft(
     for start, stop, looks in (
         (0, sides, look), (sides, sides + end, first), (sides + end, sides + 2 * end, last),
     ):  # fmt: skip
-        faces[start:stop] = _face(looks) if isinstance(looks, Look) else np.repeat(looks.reshape(-1), 2)
+        faces[start:stop] = _face(looks) if isinstance(looks, FaceLook) else np.repeat(looks.reshape(-1), 2)
     return closed(rings_m.reshape(-1, 3), triangles, faces)
 
 
@@ -115,21 +115,21 @@ def _strips(points: int) -> NDArray[np.intp]:
     return np.array(strips, np.intp)
 
 
-def box(low_m: Point, high_m: Point, look: Look) -> Mesh:
+def box(low_m: Point, high_m: Point, look: FaceLook) -> Mesh:
     """Return an upright box between two corners."""
     (x0, y0, z0), (x1, y1, z1) = low_m, high_m
     ring = [(y0, z0), (y1, z0), (y1, z1), (y0, z1)]
     return loft(np.array([[(x, y, z) for y, z in ring] for x in (x0, x1)]), look, look, look)
 
 
-def wedge(low_m: Point, high_m: Point, look: Look, *, top_x: tuple[float, float]) -> Mesh:
+def wedge(low_m: Point, high_m: Point, look: FaceLook, *, top_x: tuple[float, float]) -> Mesh:
     """Return a box with an upper side from ``top_x[0]`` to ``top_x[1]``: a ramp, a leaning board."""
     (x0, y0, z0), (x1, y1, z1) = low_m, high_m
     rings = [[(x0, y, z0), (x1, y, z0), (top_x[1], y, z1), (top_x[0], y, z1)] for y in (y0, y1)]
     return loft(np.array(rings), look, look, look)
 
 
-def tube(path_m: Sequence[Point], radii_m: Sequence[float], sides: int, look: Look) -> Mesh:
+def tube(path_m: Sequence[Point], radii_m: Sequence[float], sides: int, look: FaceLook) -> Mesh:
     """Return a round rod along a path, a radius at each of its points; its ends are closed."""
     path = np.asarray(path_m, np.float64)
     along = np.gradient(path, axis=0) if len(path) > 1 else path
@@ -143,15 +143,17 @@ def tube(path_m: Sequence[Point], radii_m: Sequence[float], sides: int, look: Lo
     return loft(np.array(rings), look, look, look)
 
 
-def rod(start_m: Point, end_m: Point, radius_m: float, look: Look, *, sides: int = 6) -> Mesh:
+def rod(start_m: Point, end_m: Point, radius_m: float, look: FaceLook, *, sides: int = 6) -> Mesh:
     """Return a straight rod of one thickness."""
     return tube([start_m, end_m], [radius_m, radius_m], sides, look)
 
 
-def lathe(heights_m: Sequence[float], radii_m: Sequence[float], sides: int, look: Look | Sequence[Look]) -> Mesh:
+def lathe(
+    heights_m: Sequence[float], radii_m: Sequence[float], sides: int, look: FaceLook | Sequence[FaceLook]
+) -> Mesh:
     """Return what turns about the z axis: a radius at each height; ``look`` may differ from band to band."""
     rings = np.array([ring_of(radius_m, z, sides) for z, radius_m in zip(heights_m, radii_m, strict=True)])
-    if isinstance(look, Look):
+    if isinstance(look, FaceLook):
         return loft(rings, look, look, look)
     return loft(rings, np.stack([faces_of(band, sides) for band in look]), look[0], look[-1])
 
@@ -163,14 +165,14 @@ def ring_of(radius_m: float, height_m: float, sides: int) -> F64:
     return circle
 
 
-def ball(centre_m: Point, radii_m: Point, look: Look, *, sides: int = 8, bands: int = 6) -> Mesh:
+def ball(centre_m: Point, radii_m: Point, look: FaceLook, *, sides: int = 8, bands: int = 6) -> Mesh:
     """Return an ellipsoid."""
     angles = np.linspace(-0.5 * math.pi, 0.5 * math.pi, bands + 1)
     made = lathe(np.sin(angles).tolist(), np.cos(angles).tolist(), sides, look)
     return stretched(made, radii_m, centre_m)
 
 
-def prism(outline_m: Sequence[tuple[float, float]], low_m: float, high_m: float, look: Look, *, along: int) -> Mesh:
+def prism(outline_m: Sequence[tuple[float, float]], low_m: float, high_m: float, look: FaceLook, *, along: int) -> Mesh:
     """Return an outline pulled along an axis (0, 1, 2) from ``low_m`` to ``high_m``; in the other two it lies.
 
     The outline must be such that strips between its points and their partners from its other end fill it.
@@ -230,24 +232,24 @@ def both_sides(mesh: Mesh) -> list[Mesh]:
     return [mesh, stretched(mesh, (1.0, -1.0, 1.0))]
 
 
-PAINT = Look(Material.CAR_PAINT, (190, 190, 190), painted=True)
-GLASS = Look(Material.GLASS, (28, 33, 38))
-TRIM = Look(Material.PLAIN, (32, 32, 34))
-RUBBER = Look(Material.RUBBER, (24, 24, 25))
-RIM = Look(Material.METAL, (165, 168, 172))
-CHROME = Look(Material.METAL, (200, 202, 205))
-STEEL = Look(Material.METAL, (120, 123, 126))
-BLACK = Look(Material.PLAIN, (18, 18, 19))
-PLATE = Look(Material.SIGN_FACE, (235, 235, 228))
+PAINT = FaceLook(Material.CAR_PAINT, (190, 190, 190), painted=True)
+GLASS = FaceLook(Material.GLASS, (28, 33, 38))
+TRIM = FaceLook(Material.PLAIN, (32, 32, 34))
+RUBBER = FaceLook(Material.RUBBER, (24, 24, 25))
+RIM = FaceLook(Material.METAL, (165, 168, 172))
+CHROME = FaceLook(Material.METAL, (200, 202, 205))
+STEEL = FaceLook(Material.METAL, (120, 123, 126))
+BLACK = FaceLook(Material.PLAIN, (18, 18, 19))
+PLATE = FaceLook(Material.SIGN_FACE, (235, 235, 228))
 
-HEAD = Look(Material.LAMP, (225, 230, 235), LampOf.HEAD)
-TAIL = Look(Material.LAMP, (150, 14, 12), LampOf.TAIL)
-BRAKE = Look(Material.LAMP, (120, 12, 10), LampOf.BRAKE)
-REVERSE = Look(Material.LAMP, (215, 215, 215), LampOf.REVERSE)
-BLINKER_LEFT = Look(Material.LAMP, (205, 110, 15), LampOf.BLINKER_LEFT)
-BLINKER_RIGHT = Look(Material.LAMP, (205, 110, 15), LampOf.BLINKER_RIGHT)
-BEACON_BLUE = Look(Material.LAMP, (30, 60, 190), LampOf.BEACON)
-BEACON_RED = Look(Material.LAMP, (190, 25, 20), LampOf.BEACON)
+HEAD = FaceLook(Material.LAMP, (225, 230, 235), LampOf.HEAD)
+TAIL = FaceLook(Material.LAMP, (150, 14, 12), LampOf.TAIL)
+BRAKE = FaceLook(Material.LAMP, (120, 12, 10), LampOf.BRAKE)
+REVERSE = FaceLook(Material.LAMP, (215, 215, 215), LampOf.REVERSE)
+BLINKER_LEFT = FaceLook(Material.LAMP, (205, 110, 15), LampOf.BLINKER_LEFT)
+BLINKER_RIGHT = FaceLook(Material.LAMP, (205, 110, 15), LampOf.BLINKER_RIGHT)
+BEACON_BLUE = FaceLook(Material.LAMP, (30, 60, 190), LampOf.BEACON)
+BEACON_RED = FaceLook(Material.LAMP, (190, 25, 20), LampOf.BEACON)
 
 
 class Shape(NamedTuple):

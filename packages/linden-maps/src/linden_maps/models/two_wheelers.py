@@ -21,7 +21,7 @@ from linden_maps.models.solids import (
     RUBBER,
     STEEL,
     TAIL,
-    Look,
+    FaceLook,
     Point,
     Shape,
     ball,
@@ -56,11 +56,11 @@ def _hubs(blueprint: Blueprint) -> tuple[Vector3D, Vector3D]:
     return front, rear
 
 
-def _line(points: Sequence[Point], radius_m: float, look: Look) -> Mesh:
+def _line(points: Sequence[Point], radius_m: float, look: FaceLook) -> Mesh:
     return tube(points, [radius_m] * len(points), 6, look)
 
 
-def _bars(blueprint: Blueprint, hub: Vector3D, head: tuple[float, float], look: Look, fork_m: float) -> list[Mesh]:
+def _bars(blueprint: Blueprint, hub: Vector3D, head: tuple[float, float], look: FaceLook, fork_m: float) -> list[Mesh]:
     """Return fork, stem and handlebar in the fork's frame (origin: the hub); ``head`` is the place of the grips."""
     half_y, (x, z) = blueprint.box.extent.y, (head[0] - hub.x, head[1] - hub.z)
     top = (0.82 * x, 0.0, 0.82 * z)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from shapely import LineString, Point
 
 from linden_maps.openstreetmap.extract import Extract, Tags
-from linden_maps.openstreetmap.graph import STRAIGHT_TO_RING_M, Graph, Segment
+from linden_maps.openstreetmap.graph import STRAIGHT_TO_RING_M, Segment, SegmentGraph
 from linden_maps.openstreetmap.tags import TAGGED
 from linden_maps.streets.street_facts import Control
 
@@ -32,14 +32,14 @@ class Governed(NamedTuple):
     source: str
 
 
-class Controls(NamedTuple):
+class JunctionControls(NamedTuple):
     """What governs each junction node, and how many signs and lights belong to no junction."""
 
     at: Mapping[int, Governed]
     unplaced: Counter[str]
 
 
-def controls_of(extract: Extract, graph: Graph, *, metric: bool) -> Controls:
+def controls_of(extract: Extract, graph: SegmentGraph, *, metric: bool) -> JunctionControls:
     """Return what governs the junctions. ``metric``: guessed signs are yield signs; else stop signs, as in the US."""
     ends: dict[int, list[tuple[Segment, bool]]] = defaultdict(list)
     for segment in graph.segments:
@@ -53,11 +53,11 @@ def controls_of(extract: Extract, graph: Graph, *, metric: bool) -> Controls:
         incoming = [segment for segment, at_end in ends[node] if _lanes_into(segment, at_end=at_end)]
         governed = _told(graph, node, own, incoming, marks.get(node, {}))
         found[node] = governed or _guessed(graph, ends[node], incoming, metric=metric)
-    return Controls(found, unplaced)
+    return JunctionControls(found, unplaced)
 
 
 def _told(
-    graph: Graph, node: int, own: Tags, incoming: list[Segment], marks: Mapping[str, set[str]]
+    graph: SegmentGraph, node: int, own: Tags, incoming: list[Segment], marks: Mapping[str, set[str]]
 ) -> Governed | None:
     """Return what tags say of a junction, None where they say nothing."""
     kind = _KINDS.get(own.get("highway", ""))
@@ -83,7 +83,7 @@ def _signed(incoming: list[Segment], marks: Mapping[str, set[str]]) -> Governed 
     return None
 
 
-def _of_ring(graph: Graph, incoming: list[Segment]) -> Governed | None:
+def _of_ring(graph: SegmentGraph, incoming: list[Segment]) -> Governed | None:
     """Return that traffic waits for the traffic of a ring, None where no ring passes."""
     waiting = tuple(segment.id for segment in incoming if segment.id not in graph.circulating)
     if len(waiting) == len(incoming) or not waiting:
@@ -91,7 +91,9 @@ def _of_ring(graph: Graph, incoming: list[Segment]) -> Governed | None:
     return Governed(Control.GIVE_WAY, waiting, "implied by junction=roundabout")
 
 
-def _guessed(graph: Graph, legs: list[tuple[Segment, bool]], incoming: list[Segment], *, metric: bool) -> Governed:
+def _guessed(
+    graph: SegmentGraph, legs: list[tuple[Segment, bool]], incoming: list[Segment], *, metric: bool
+) -> Governed:
     """Return a guess: traffic of a lower class waits where a street of a higher class passes through."""
     best = min(_RANK[segment.across.street_class] for segment, _ in legs)
     passing = sum(_RANK[segment.across.street_class] == best for segment, _ in legs)
@@ -102,7 +104,7 @@ def _guessed(graph: Graph, legs: list[tuple[Segment, bool]], incoming: list[Segm
     return Governed(control, waiting, "guessed: no tag, the lower class of street waits")
 
 
-def _has_room(graph: Graph, node: int) -> bool:
+def _has_room(graph: SegmentGraph, node: int) -> bool:
     """Return whether the streets of a mini-roundabout lead straight to its middle from far enough away."""
     centre = graph.metres[node]
     for segment in graph.at(node):
@@ -120,7 +122,7 @@ def _lanes_into(segment: Segment, *, at_end: bool) -> int:
 
 
 def _marks_before(
-    extract: Extract, graph: Graph, junctions: set[int]
+    extract: Extract, graph: SegmentGraph, junctions: set[int]
 ) -> tuple[dict[int, dict[str, set[str]]], Counter[str]]:
     """Return for each junction which segments have a sign or light before it, and how many belong to none."""
     found: dict[int, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
@@ -153,7 +155,7 @@ def _ends_meant(
     return sorted(possible, key=lambda option: option[1])[:1]
 
 
-def _walks(extract: Extract, graph: Graph) -> dict[int, tuple[Segment, float, float, bool]]:
+def _walks(extract: Extract, graph: SegmentGraph) -> dict[int, tuple[Segment, float, float, bool]]:
     """Return where each sign or light stands: the segment, the way to both its ends, whether its way runs along."""
     found: dict[int, tuple[Segment, float, float, bool]] = {}
     for segment in graph.segments:
@@ -168,7 +170,7 @@ def _walks(extract: Extract, graph: Graph) -> dict[int, tuple[Segment, float, fl
     return found
 
 
-def _measured(graph: Graph, segment: Segment, node: int) -> tuple[float, float] | None:
+def _measured(graph: SegmentGraph, segment: Segment, node: int) -> tuple[float, float] | None:
     """Return how far along a segment a node lies, from its first and to its last node; None where it is elsewhere."""
     line = LineString([graph.metres[each] for each in segment.nodes])
     point = Point(graph.metres[node])
@@ -178,7 +180,7 @@ def _measured(graph: Graph, segment: Segment, node: int) -> tuple[float, float] 
     return at_m, float(line.length) - at_m
 
 
-def _is_along(segment: Segment, nodes: tuple[int, ...], graph: Graph, node: int) -> bool:
+def _is_along(segment: Segment, nodes: tuple[int, ...], graph: SegmentGraph, node: int) -> bool:
     """Return whether the nodes of a way have the order of a segment's, near a node."""
     line = LineString([graph.metres[each] for each in segment.nodes])
     place = nodes.index(node)

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 from linden.errors import UserError
 from linden_maps.openstreetmap import surroundings
-from linden_maps.openstreetmap.controls import Controls, controls_of
+from linden_maps.openstreetmap.controls import JunctionControls, controls_of
 from linden_maps.openstreetmap.extract import Extract, OsmWay, read_extract
-from linden_maps.openstreetmap.graph import Graph, Segment, graph_of, mirrored
+from linden_maps.openstreetmap.graph import Segment, SegmentGraph, graph_of, mirrored
 from linden_maps.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class, unbuilt_cycleways
 from linden_maps.streets.street_facts import Control
 
@@ -71,7 +71,7 @@ def _is_metric(ways: list[OsmWay]) -> bool:
     return 2 * sum("mph" in limit for limit in limits) < len(limits) or not limits
 
 
-def _street(segment: Segment, graph: Graph) -> dict[str, Any]:
+def _street(segment: Segment, graph: SegmentGraph) -> dict[str, Any]:
     """Return the feature of a segment, seen so that the larger part of what lies on one side is on its right."""
     across, nodes = segment.across, segment.nodes
     if _is_better_mirrored(segment):
@@ -116,7 +116,7 @@ def _is_better_mirrored(segment: Segment) -> bool:
     return False
 
 
-def _intersection(node: int, graph: Graph, controls: Controls) -> dict[str, Any]:
+def _intersection(node: int, graph: SegmentGraph, controls: JunctionControls) -> dict[str, Any]:
     governed = controls.at[node]
     names = dict.fromkeys(segment.across.name for segment in graph.at(node))
     properties: dict[str, Any] = {
@@ -175,7 +175,7 @@ def _counted(features: list[dict[str, Any]]) -> tuple[Counter[str], Counter[str]
     return known, guessed
 
 
-def _left_out(extract: Extract, graph: Graph, controls: Controls) -> Counter[str]:
+def _left_out(extract: Extract, graph: SegmentGraph, controls: JunctionControls) -> Counter[str]:
     """Return what the extract has and the facts have not."""
     found: Counter[str] = Counter()
     for way in extract.ways.values():

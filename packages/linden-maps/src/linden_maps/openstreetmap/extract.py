@@ -72,7 +72,7 @@ def read_extract(data: bytes, name: str) -> Extract:
     """
     too_large = f"{name} has {len(data) >> 20} MiB; cut a part of at most {MOST_BYTES >> 20} MiB out of it"
     root = osm_root(data, name, kind="an OpenStreetMap extract", most_bytes=MOST_BYTES, too_large=too_large)
-    reader = _Reader(name)
+    reader = _ExtractReader(name)
     nodes: dict[int, OsmNode] = {}
     for element in _present(root, "node"):
         number = reader.fresh(element, nodes)
@@ -130,7 +130,7 @@ def _without_repeats(nodes: tuple[int, ...]) -> tuple[int, ...]:
     return tuple(node for place, node in enumerate(nodes) if place == 0 or node != nodes[place - 1])
 
 
-class _Reader:
+class _ExtractReader:
     """Attributes with checks; each refusal names the file and the line."""
 
     def __init__(self, name: str) -> None:

@@ -42,7 +42,7 @@ class Segment(NamedTuple):
         return self.nodes[0], self.nodes[-1]
 
 
-class Graph(NamedTuple):
+class SegmentGraph(NamedTuple):
     """Segments, where nodes lie (m, x east, y north, and degrees), and which nodes stand for a small ring.
 
     ``circulating``: ids of segments of larger rings. ``repeated``: how many pieces of street lay on another one.
@@ -81,7 +81,7 @@ class _Places:
         self.metres[node], self.degrees[node] = at_m, (round(longitude, 8), round(latitude, 8))
 
 
-def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, float]]:
+def graph_of(extract: Extract, *, metric: bool) -> tuple[SegmentGraph, tuple[float, float]]:
     """Return the graph of an extract's streets, and longitude and latitude of the origin of its metres.
 
     The extract has one street at least. ``metric``: whether guessed limits are in km/h.
@@ -105,7 +105,7 @@ def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, flo
         if any(extract.ways[way].tags.get("junction") in {"roundabout", "circular"} for way in segment.ways)
     )
     repeated = len(pieces) - len(different)
-    return Graph(segments, places.metres, places.degrees, frozenset(rings), circulating, repeated), places.origin
+    return SegmentGraph(segments, places.metres, places.degrees, frozenset(rings), circulating, repeated), places.origin
 
 
 def _small_rings(ways: Sequence[OsmWay], places: _Places) -> tuple[list[int], dict[int, int]]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from shapely import LineString, Point
 
 from linden_maps.openstreetmap.extract import Extract, OsmRelation, Tags
-from linden_maps.openstreetmap.graph import Graph
+from linden_maps.openstreetmap.graph import SegmentGraph
 from linden_maps.openstreetmap.tags import TAGGED, metres
 
 LEVEL_M = 3.0  # of a storey, as the Wiki's page on building:levels reckons
@@ -77,7 +77,7 @@ def height_of(tags: Tags) -> tuple[float, str]:
     return HEIGHT_M.get(kind, USUAL_HEIGHT_M), f"guessed from building={kind}"
 
 
-def crossings(extract: Extract, graph: Graph) -> Iterator[Spot]:
+def crossings(extract: Extract, graph: SegmentGraph) -> Iterator[Spot]:
     """Yield the painted crossings on streets."""
     street_of: dict[int, str] = {}
     for segment in graph.segments:
@@ -102,7 +102,7 @@ def furniture(extract: Extract) -> Iterator[Spot]:
                 yield Spot(str(number), kind, node.tags.get("name", ""), (node[0], node[1]))
 
 
-def _nearest(graph: Graph, extract: Extract, node: int) -> str | None:
+def _nearest(graph: SegmentGraph, extract: Extract, node: int) -> str | None:
     """Return the id of the street that passes a node, None where none of its way's pieces does."""
     point = Point(graph.metres[node])
     best: tuple[float, str] | None = None

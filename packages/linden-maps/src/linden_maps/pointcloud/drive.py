@@ -24,7 +24,7 @@ _BLOCK_M = 200.0
 """Places are visited block by block, so that what is near to one another is measured one after the other."""
 
 
-class Place(NamedTuple):
+class SensorPlace(NamedTuple):
     """A level sensor in the map's frame."""
 
     x_m: float
@@ -44,7 +44,7 @@ class Place(NamedTuple):
         return from_opendrive(self.x_m, self.y_m, self.z_m, self.heading_rad)
 
 
-def places_along(opendrive: OpenDrive, every_m: float, height_m: float) -> list[Place]:
+def places_along(opendrive: OpenDrive, every_m: float, height_m: float) -> list[SensorPlace]:
     """Return places in the middle of the driving lanes, ``height_m`` above them.
 
     Every point of such a lane has a place within ``every_m`` or a little more, and no two places are nearer to each
@@ -55,7 +55,7 @@ def places_along(opendrive: OpenDrive, every_m: float, height_m: float) -> list[
     block = np.floor(kept[:, :2] / _BLOCK_M).astype(np.int64)
     back = block[:, 0] % 2 == 1  # there northwards, back southwards
     order = np.lexsort((np.where(back, -block[:, 1], block[:, 1]), block[:, 0]))
-    return [Place(x, y, z + height_m, heading) for x, y, z, heading in kept[order].tolist()]
+    return [SensorPlace(x, y, z + height_m, heading) for x, y, z, heading in kept[order].tolist()]
 
 
 def _candidates(opendrive: OpenDrive, step_m: float) -> F64:
@@ -114,7 +114,7 @@ class Lidar(NamedTuple):
         return Fan(self.channels, *edges, 360.0, _TURN_HZ, points_per_s, self.range_m)
 
 
-def drive(places: Sequence[Place], lidar: Lidar, caster: Caster, standing: Mesh) -> Iterator[Scan]:
+def drive(places: Sequence[SensorPlace], lidar: Lidar, caster: Caster, standing: Mesh) -> Iterator[Scan]:
     """Give the scan of each place, with the semantic tag of each point; a scan counts as one."""
     fired = fire(lidar.fan, 0.0, 1.0 / _TURN_HZ)
     number = np.arange(fired.rays, dtype=np.int32)

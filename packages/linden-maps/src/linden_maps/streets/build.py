@@ -93,7 +93,7 @@ class _Assembly:
         self.object_ids = itertools.count(1)
         self.controller_ids = itertools.count(FIRST_CONTROLLER_ID)
         self.touches: dict[End, roads.Touch] = {}
-        self.surfaces: dict[End, junction_surfaces.Surface] = {}
+        self.surfaces: dict[End, junction_surfaces.JunctionHeights] = {}
         self.meetings: dict[End, roads.HeightAndSlope] = {}
         self.signals: dict[int, list[Signal]] = defaultdict(list)
         self.objects: dict[int, list[Object]] = defaultdict(list)

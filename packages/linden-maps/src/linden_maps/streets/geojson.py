@@ -25,11 +25,11 @@ from linden_maps.streets.street_facts import (
     Building,
     Control,
     Crossing,
+    CrossingPlace,
     Facts,
     Furniture,
     Ground,
     Intersection,
-    Place,
     Railroad,
     Route,
     Speed,
@@ -97,7 +97,7 @@ def read(document: object) -> Facts:
         ),
         stops=tuple(_stop(f, metres(f.lonlats())[0], known) for f in features if f.kind == "shuttle_stop"),
         schools=tuple(
-            Place(feature.text("name"), metres(feature.lonlats())[0])
+            CrossingPlace(feature.text("name"), metres(feature.lonlats())[0])
             for feature in features
             if feature.kind == "poi" and feature.properties.get("kind") == "school"
         ),

@@ -52,7 +52,7 @@ class StreetEnd(NamedTuple):
     slope: float
 
 
-class Surface(NamedTuple):
+class JunctionHeights(NamedTuple):
     """The heights inside a junction: those of the street ends near them, those of the plane elsewhere."""
 
     plane: Plane
@@ -83,7 +83,7 @@ def surfaces(
     junctions: Sequence[tuple[Leg, ...]],
     roads_m: Sequence[float | None],
     lifts_m: Sequence[float],
-) -> tuple[Surface, ...]:
+) -> tuple[JunctionHeights, ...]:
     """Return each junction's surface, lifted by the mean lift of its nodes; ``roads_m``: None inside junctions."""
     planes = levelled(ground.profile, [fitted(ground, legs) for legs in junctions], junctions, roads_m)
     found = []
@@ -98,7 +98,7 @@ def surfaces(
             for leg in legs
         )
         lift_m = math.fsum(lifts_m[leg.node] for leg in legs) / len(legs)
-        found.append(Surface(plane._replace(height_m=plane.height_m + lift_m), ends))
+        found.append(JunctionHeights(plane._replace(height_m=plane.height_m + lift_m), ends))
     return tuple(found)
 
 
@@ -156,7 +156,7 @@ def levelled(
     return tuple(plane._replace(height_m=round(height_m, 3)) for plane, height_m in zip(planes, found, strict=True))
 
 
-def laid(record: RoadRecord, surface: Surface) -> RoadRecord:
+def laid(record: RoadRecord, surface: JunctionHeights) -> RoadRecord:
     """Return a road of a junction with its heights: the reference line and the lanes' edges lie on the surface.
 
     What stands on the right of a kerb stays level from side to side.
@@ -226,14 +226,14 @@ def _most_rise_m(profile: Profile, road_m: float, slopes: float) -> float:
     return mean * road_m
 
 
-def _height_and_slope(surface: Surface, record: RoadRecord, s_m: float, total_m: float) -> tuple[float, float]:
+def _height_and_slope(surface: JunctionHeights, record: RoadRecord, s_m: float, total_m: float) -> tuple[float, float]:
     """Return height and rise per metre along a road on a surface."""
     places_m = max(s_m - 0.01, 0.0), min(s_m + 0.01, total_m)
     before, after = (surface.height_m(*pose_at(record.path, place_m)[:2]) for place_m in places_m)
     return surface.height_m(*pose_at(record.path, s_m)[:2]), (after - before) / (places_m[1] - places_m[0])
 
 
-def _tilted(lane: LaneRecord, record: RoadRecord, surface: Surface) -> LaneRecord:
+def _tilted(lane: LaneRecord, record: RoadRecord, surface: JunctionHeights) -> LaneRecord:
     """Return a lane with both its edges on the surface, or as far above it as the lane is raised."""
     total_m = length(record.path)
     count = math.ceil(total_m / TILT_STEP_M)

@@ -21,14 +21,14 @@ RAMP = 0.07
 """Mean rise of a ramp; in its middle it rises half as much again."""
 
 
-class Crossing(NamedTuple):
+class EdgeCrossing(NamedTuple):
     """Two edges that cross without a common node; ``is_separated``: at different levels."""
 
     edges: tuple[int, int]
     is_separated: bool
 
 
-def lifts(network: Network, found_crossings: Sequence[Crossing]) -> tuple[float, ...]:
+def lifts(network: Network, found_crossings: Sequence[EdgeCrossing]) -> tuple[float, ...]:
     """Return how far each node lies above the ground in m, below it as a negative figure."""
     separated = [crossing.edges for crossing in found_crossings if crossing.is_separated]
     raised = {edge: network.edges[edge].street.level for pair in separated for edge in pair}
@@ -40,14 +40,14 @@ def lifts(network: Network, found_crossings: Sequence[Crossing]) -> tuple[float,
     return tuple(round(lift_m, 3) for lift_m in found)
 
 
-def crossings(network: Network) -> list[Crossing]:
+def crossings(network: Network) -> list[EdgeCrossing]:
     """Return the edges that cross without a common node, each pair once."""
     lines = [LineString(edge.points) for edge in network.edges]
     ones, others = STRtree(lines).query(lines, predicate="intersects")
     pairs = zip(ones.tolist(), others.tolist(), strict=True)
     edges = network.edges
     return [
-        Crossing((one, other), edges[one].street.level != edges[other].street.level)
+        EdgeCrossing((one, other), edges[one].street.level != edges[other].street.level)
         for one, other in sorted(pairs)
         if one < other and set(edges[one].nodes).isdisjoint(edges[other].nodes)
     ]

@@ -96,7 +96,7 @@ class Stop(NamedTuple):
     confidence: str
 
 
-class Place(NamedTuple):
+class CrossingPlace(NamedTuple):
     """A place near which people cross."""
 
     name: str
@@ -221,7 +221,7 @@ class Facts(NamedTuple):
     streets: tuple[Street, ...]
     intersections: tuple[Intersection, ...]
     stops: tuple[Stop, ...]
-    schools: tuple[Place, ...]
+    schools: tuple[CrossingPlace, ...]
     routes: Mapping[str, Route]
     crossings: tuple[Crossing, ...] = ()
     buildings: tuple[Building, ...] = ()

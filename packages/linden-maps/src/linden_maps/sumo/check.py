@@ -10,7 +10,7 @@ from linden.maps.navigation.areas import crosswalk_outlines
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
 from linden_maps.sumo.net import Net
-from linden_maps.sumo.network import Converted
+from linden_maps.sumo.network import ConvertedNetwork
 
 LENGTH_SHARE = 0.02  # of the whole length that netconvert may cut off or add at joints of lanes
 SPEED_MPS = 0.05  # SUMO writes two decimals
@@ -26,7 +26,7 @@ class Compared(NamedTuple):
     misfits: tuple[str, ...]
 
 
-def compare(converted: Converted) -> Compared:
+def compare(converted: ConvertedNetwork) -> Compared:
     """Compare the network with its map."""
     net, opendrive = converted.net, converted.opendrive
     lanes = {kind: list(_lanes(opendrive, kind)) for kind in (LaneType.DRIVING, LaneType.SIDEWALK)}
@@ -59,7 +59,7 @@ def compare(converted: Converted) -> Compared:
     return Compared(table, (*misfits, *people.misfits))
 
 
-def _people(converted: Converted) -> Compared:
+def _people(converted: ConvertedNetwork) -> Compared:
     """Compare what people walk on: crosswalks with crossings, and whether the pavements hang together.
 
     A network without crossings was made for cars alone.
@@ -90,7 +90,7 @@ class _Found(NamedTuple):
     speeds: list[str]
 
 
-def _found(converted: Converted) -> _Found:
+def _found(converted: ConvertedNetwork) -> _Found:
     """Return the lanes of the map that the network lacks, and the lanes with other speeds."""
     net, missing, speeds = converted.net, [], []
     for origin, length_m, limit_mps in _lanes(converted.opendrive, LaneType.DRIVING):
@@ -119,7 +119,7 @@ def _lanes(opendrive: OpenDrive, kind: LaneType) -> Iterator[tuple[str, float, f
                     yield f"{road.id}_{lane.id}", section.end_m - section.s_m, limit
 
 
-def _signs(converted: Converted) -> list[tuple[str, int, int]]:
+def _signs(converted: ConvertedNetwork) -> list[tuple[str, int, int]]:
     """Return what the map's signs and lights come to: name, number in the map, number with links that act as signed.
 
     A link's state is ``s`` or ``w`` at a stop, ``m`` where it yields, ``o`` or ``O`` at a light.

@@ -8,13 +8,13 @@ from lxml import etree
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.records import AffectedLane, PlacedSignal
-from linden_maps.sumo.net import Connection, Net
+from linden_maps.sumo.net import Net, NetConnection
 
 MINOR_PRIORITY, MAJOR_PRIORITY = 1, 3
 """Priorities of edges with and without a stop or yield sign. Without them netconvert stops 25 other approaches."""
 
 
-class Controls(NamedTuple):
+class SumoSignals(NamedTuple):
     """The signals by the edge that they govern; ``lost`` are signals on no edge."""
 
     stops: dict[str, PlacedSignal]
@@ -23,9 +23,9 @@ class Controls(NamedTuple):
     lost: tuple[PlacedSignal, ...]
 
 
-def controls_of(net: Net, placed: tuple[PlacedSignal, ...], opendrive: OpenDrive) -> Controls:
+def controls_of(net: Net, placed: tuple[PlacedSignal, ...], opendrive: OpenDrive) -> SumoSignals:
     """Find the edge of each stop sign, yield sign and light."""
-    found = Controls({}, {}, {}, ())
+    found = SumoSignals({}, {}, {}, ())
     lost = []
     for signal in placed:
         kind = {STOP_SIGN_TYPE: found.stops, YIELD_SIGN_TYPE: found.yields}.get(signal.type)
@@ -68,7 +68,7 @@ def _approach(opendrive: OpenDrive, lane: AffectedLane, junction: int) -> tuple[
     return f"{before.id}_{linked}", road.junction_id
 
 
-def node_types(net: Net, controls: Controls) -> dict[str, str]:
+def node_types(net: Net, controls: SumoSignals) -> dict[str, str]:
     """Return the type of each node with signs: ``allway_stop``, ``priority_stop`` or ``priority``.
 
     ``rightOfWay="edgePriority"`` would turn every stop into a yield, so only the node's type makes traffic stop.
@@ -95,7 +95,7 @@ def node_patch(types: dict[str, str]) -> bytes:
     return etree.tostring(root, pretty_print=True)
 
 
-def edge_patch(net: Net, controls: Controls) -> bytes:
+def edge_patch(net: Net, controls: SumoSignals) -> bytes:
     """Return the file of edge priorities for netconvert."""
     root = etree.Element("edges")
     for edge in net.car_edges():
@@ -108,12 +108,12 @@ class _Links(NamedTuple):
     """The links of one light, by their index."""
 
     heads: dict[int, PlacedSignal]  # what governs each
-    ways: dict[int, Connection]
+    ways: dict[int, NetConnection]
     crossed: dict[int, tuple[str, ...]]  # the edges that a crossing leads over
 
 
 def light_programs(
-    net: Net, controls: Controls, order: dict[str, int], times_s: tuple[float, float, float]
+    net: Net, controls: SumoSignals, order: dict[str, int], times_s: tuple[float, float, float]
 ) -> dict[str, "etree._Element"]:
     """The server's own program for each light: one controller after the other is green, yellow, then all are red.
 

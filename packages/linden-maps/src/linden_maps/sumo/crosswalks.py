@@ -23,7 +23,7 @@ Place = tuple[float, float]
 Point = tuple[float, float, float]
 
 
-class Leg(NamedTuple):
+class CrosswalkLeg(NamedTuple):
     """A leg of a junction with a marked crosswalk. Places are in SUMO's frame."""
 
     node: str
@@ -34,9 +34,9 @@ class Leg(NamedTuple):
     width_m: float
 
 
-def marked_legs(net: Net, opendrive: OpenDrive) -> tuple[Leg, ...]:
+def marked_legs(net: Net, opendrive: OpenDrive) -> tuple[CrosswalkLeg, ...]:
     """Return the legs with a marked crosswalk, in the order of the map; a leg with several has that nearest to it."""
-    found: dict[tuple[str, str], Leg] = {}
+    found: dict[tuple[str, str], CrosswalkLeg] = {}
     for road_id, outline_m in crosswalk_outlines(opendrive):
         shape = [(x_m + net.offset_m[0], y_m + net.offset_m[1]) for x_m, y_m in outline_m]
         for edge in _edges_of_road(net, road_id):
@@ -57,7 +57,7 @@ def _roads_of(edge: NetEdge) -> set[str]:
     return {origin.rpartition("_")[0] for lane in edge.car_lanes for origin in lane.origins}
 
 
-def _leg(net: Net, edge: NetEdge, shape: Sequence[Place]) -> Leg | None:
+def _leg(net: Net, edge: NetEdge, shape: Sequence[Place]) -> CrosswalkLeg | None:
     """Return the leg that ``edge`` comes in on, where a crosswalk lies before its end."""
     lane = edge.car_lanes[-1]
     if net.node_types[edge.end] == "dead_end":
@@ -72,7 +72,7 @@ def _leg(net: Net, edge: NetEdge, shape: Sequence[Place]) -> Leg | None:
     (x0_m, y0_m), (x1_m, y1_m) = lane.shape[-2][:2], lane.shape[-1][:2]
     z_m = lane.shape[-1][2] if len(lane.shape[-1]) > 2 else 0.0
     ends_m, width_m = _axis(shape, ((x1_m - x0_m), (y1_m - y0_m)), z_m)
-    return Leg(edge.end, edge.id, going, cut_m, ends_m, width_m)
+    return CrosswalkLeg(edge.end, edge.id, going, cut_m, ends_m, width_m)
 
 
 def _axis(shape: Sequence[Place], heading: Place, z_m: float) -> tuple[tuple[Point, Point], float]:
@@ -92,7 +92,7 @@ def _axis(shape: Sequence[Place], heading: Place, z_m: float) -> tuple[tuple[Poi
     return (left, right_end), max(ahead_m) - min(ahead_m)
 
 
-def end_at_lines(root: "etree._Element", legs: Iterable[Leg]) -> None:
+def end_at_lines(root: "etree._Element", legs: Iterable[CrosswalkLeg]) -> None:
     """Shorten the streets of a network, so that they end at the stop lines before their marked crosswalks."""
     cuts: dict[str, list[float]] = {}
     for leg in legs:
@@ -124,7 +124,7 @@ def _without_begin(points: list[tuple[float, ...]], cut_m: float) -> list[tuple[
     return points
 
 
-def crossing_patch(legs: Iterable[Leg]) -> bytes:
+def crossing_patch(legs: Iterable[CrosswalkLeg]) -> bytes:
     """Return the file of crossings for netconvert, each on its marking."""
     root = etree.Element("connections")
     for leg in legs:

@@ -8,12 +8,12 @@ from lxml import etree
 from linden.maps.facts import derive
 from linden.maps.library import HOME_MAPS
 from linden.maps.navigation.areas import crosswalk_outlines
-from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.objects import ObjectKind
 from linden.scenery.scene.south_linden import home
 from linden_maps.output import staged_folder
 from linden_maps.sumo.bus_stops import STOP_CLEAR_M, BusStop, RouteStop, bus_stops, parking_areas, stops_file
 from linden_maps.sumo.demand import Demand, check, draw, trips_file
-from linden_maps.sumo.network import Converted, convert
+from linden_maps.sumo.network import ConvertedNetwork, convert
 from linden_maps.sumo.people import draw_riders, draw_walks, people_file
 from linden_maps.sumo.places import places_of
 from linden_maps.sumo.vehicle_types import types_file
@@ -27,7 +27,7 @@ OURS = (".net.xml", ".rou.xml", ".add.xml", ".sumocfg")  # ends of the names of 
 class Written(NamedTuple):
     """What was written."""
 
-    converted: Converted
+    converted: ConvertedNetwork
     config: Path  # with the demand
     empty: Path  # without it
     trips: int
@@ -74,7 +74,7 @@ def write_folder(
 
 
 def _taken(
-    converted: Converted, text: bytes, name: str, stops: tuple[BusStop, ...]
+    converted: ConvertedNetwork, text: bytes, name: str, stops: tuple[BusStop, ...]
 ) -> list[tuple[float, float, float]]:
     """Return where nothing may park, x, y and radius in SUMO's frame: crosswalks, bus stops, and the map's parked cars.
 
@@ -86,7 +86,7 @@ def _taken(
         taken += [(x + x_m, y + y_m, CROSSWALK_CLEAR_M) for x, y in outline_m]
     if name in HOME_MAPS:
         things = home(derive(text.decode())).things
-        for at_m in things["base"][things["kind"] == Kind.PARKED_CAR]:
+        for at_m in things["base"][things["kind"] == ObjectKind.PARKED_CAR]:
             taken.append((float(at_m[0]) + x_m, y_m - float(at_m[1]), CAR_CLEAR_M))
     return taken
 

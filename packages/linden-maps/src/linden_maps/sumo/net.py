@@ -55,7 +55,7 @@ class NetEdge(NamedTuple):
         return self.lanes[0].length_m
 
 
-class Connection(NamedTuple):
+class NetConnection(NamedTuple):
     """One way from lane to lane over a node; ``light`` and ``link`` name the head that governs it."""
 
     start: str
@@ -73,7 +73,7 @@ class Net:
     """A whole network without its internal edges. ``offset_m`` was added to OpenDRIVE's x and y."""
 
     edges: MappingProxyType[str, NetEdge]
-    connections: tuple[Connection, ...]
+    connections: tuple[NetConnection, ...]
     node_types: MappingProxyType[str, str]
     lights: frozenset[str]
     crossed: MappingProxyType[str, tuple[str, ...]]  # the edges that a crossing leads over, by the crossing's id
@@ -177,8 +177,8 @@ def _lane(element: "etree._Element") -> NetLane:
     )
 
 
-def _connection(element: "etree._Element") -> Connection:
-    return Connection(
+def _connection(element: "etree._Element") -> NetConnection:
+    return NetConnection(
         start=str(element.get("from")),
         end=str(element.get("to")),
         start_lane=int(str(element.get("fromLane"))),

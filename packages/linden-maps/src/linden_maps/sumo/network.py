@@ -12,7 +12,7 @@ from linden.maps.opendrive.signals import place
 from linden.traffic.cycle import TIMES_S
 from linden_maps.sumo import programs
 from linden_maps.sumo.controls import (
-    Controls,
+    SumoSignals,
     controls_of,
     edge_patch,
     light_programs,
@@ -58,15 +58,15 @@ FIRST_PASS = (
 PEOPLE = ("--crossings.guess", "--walkingareas")
 
 
-class Converted(NamedTuple):
+class ConvertedNetwork(NamedTuple):
     """A network with what governs its approaches."""
 
     net: Net
-    controls: Controls
+    controls: SumoSignals
     opendrive: OpenDrive
 
 
-def convert(text: bytes, target: Path, *, people: bool = True) -> Converted:
+def convert(text: bytes, target: Path, *, people: bool = True) -> ConvertedNetwork:
     """Write the SUMO network of an OpenDRIVE map to ``target``; ``people`` adds crossings and walking areas.
 
     The same map gives the same bytes: netconvert's note on when and how it ran is left out.
@@ -99,7 +99,7 @@ def convert(text: bytes, target: Path, *, people: bool = True) -> Converted:
         )
         programs.run("netconvert", second, folder)
         _finish(folder / "second.net.xml", controls, opendrive, target)
-    return Converted(read_net(target), controls, opendrive)
+    return ConvertedNetwork(read_net(target), controls, opendrive)
 
 
 def with_lane_speeds(text: bytes) -> bytes:
@@ -121,7 +121,7 @@ def with_lane_speeds(text: bytes) -> bytes:
     return etree.tostring(root)
 
 
-def _finish(source: Path, controls: Controls, opendrive: OpenDrive, target: Path) -> None:
+def _finish(source: Path, controls: SumoSignals, opendrive: OpenDrive, target: Path) -> None:
     """Replace the lights' programs by the server's, and write the network without the note of netconvert."""
     root = etree.parse(str(source), etree.XMLParser(remove_comments=True)).getroot()
     net = read_net(source)

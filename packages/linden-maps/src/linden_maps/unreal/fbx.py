@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden_maps.unreal.parts import Part, Surface
+from linden_maps.unreal.parts import Part, PartMaterial
 
 VERSION = 7400
 CM_PER_M = 100.0
@@ -145,7 +145,7 @@ def _definitions(parts: int, surfaces: int) -> _Node:
     return _Node("Definitions", (), (_Node("Version", (100,)), _Node("Count", (sum(counts.values()),)), *kinds))
 
 
-def _objects(parts: Sequence[Part], ids: dict[Surface, int]) -> Iterator[_Node]:
+def _objects(parts: Sequence[Part], ids: dict[PartMaterial, int]) -> Iterator[_Node]:
     for row, part in enumerate(parts):
         yield _geometry(part, 1_000_000 + row)
     for row, part in enumerate(parts):
@@ -215,7 +215,7 @@ def _model(part: Part, number: int) -> _Node:
     )
 
 
-def _material(surface: Surface, number: int) -> _Node:
+def _material(surface: PartMaterial, number: int) -> _Node:
     colour = [round(value / 255.0, 6) for value in surface.colour]
     properties = (
         _p("DiffuseColor", "Color", "", "A", *colour),
@@ -234,7 +234,7 @@ def _material(surface: Surface, number: int) -> _Node:
     )
 
 
-def _connections(parts: Sequence[Part], ids: dict[Surface, int]) -> Iterator[_Node]:
+def _connections(parts: Sequence[Part], ids: dict[PartMaterial, int]) -> Iterator[_Node]:
     """Yield what belongs to what: models to the scene, geometries and materials (in their order) to models."""
     for row, part in enumerate(parts):
         yield _Node("C", ("OO", _Long(2_000_000 + row), _Long(0)))

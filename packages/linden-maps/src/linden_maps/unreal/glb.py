@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from linden.scenery.gltf import ARRAY, ELEMENTS, FLOAT, UNSIGNED_INT, Buffer, file_of, material_of
-from linden_maps.unreal.parts import Part, Surface
+from linden_maps.unreal.parts import Part, PartMaterial
 
 _AXES, _SIGNS = [0, 2, 1], (1.0, 1.0, -1.0)  # of ours that are x, y, z of the file: east, up, south
 
@@ -60,7 +60,7 @@ def _primitive(part: Part, row: int, origin: np.ndarray[Any, np.dtype[np.float64
     }
 
 
-def _material(surface: Surface) -> dict[str, Any]:
+def _material(surface: PartMaterial) -> dict[str, Any]:
     found = material_of(surface.kind)
     linear = [round((value / 255.0) ** 2.2, 6) for value in surface.colour]
     found["name"] = surface.name

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 from linden.scenery.streets.road import KERB_STONE
 
 F64 = NDArray[np.float64]
@@ -55,14 +55,14 @@ FOLDER_OF_GROUP = {
 }
 """The folder ``Static/<folder>`` from which CARLA 0.9.16 takes a mesh's semantic class (Tagger.cpp)."""
 
-BY_CARLA = frozenset({Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN})
+BY_CARLA = frozenset({ObjectKind.TRAFFIC_LIGHT, ObjectKind.TRAFFIC_SIGN})
 """What CARLA itself puts on a map, from the signals of its OpenDRIVE; no part shows it twice."""
 
 MOST_COLOURS = 8
 """Of one material in one group; rarer colours become the nearest of these. Each is a slot in Unreal."""
 
 
-class Surface(NamedTuple):
+class PartMaterial(NamedTuple):
     """A material of a part: its name, its kind, and its colour in sRGB, 0 to 255."""
 
     name: str
@@ -85,7 +85,7 @@ class Part(NamedTuple):
     normals: F64
     uv_m: F64
     surface: I64
-    surfaces: tuple[Surface, ...]
+    surfaces: tuple[PartMaterial, ...]
 
 
 def parts_of(mesh: Mesh, scene: Scene, name: str, tile_m: float = TILE_M) -> list[Part]:
@@ -160,12 +160,12 @@ def _each(groups: I64, tiles: I64) -> Iterator[tuple[int, tuple[int, int], I64]]
         yield group, (east, north), order[begin : ends[row]]
 
 
-def _surfaces(mesh: Mesh, rows: I64, group: str) -> tuple[tuple[Surface, ...], I64]:
+def _surfaces(mesh: Mesh, rows: I64, group: str) -> tuple[tuple[PartMaterial, ...], I64]:
     """Return the materials of a part, and for each triangle its row."""
     kinds = mesh.faces["material"][rows]
     colours = mesh.faces["colour"][rows].astype(np.int64)
     surface = np.zeros(len(rows), np.int64)
-    surfaces: list[Surface] = []
+    surfaces: list[PartMaterial] = []
     for kind in np.unique(kinds).tolist():
         chosen = np.flatnonzero(kinds == kind)
         distinct, count = np.unique(colours[chosen], axis=0, return_counts=True)
@@ -174,7 +174,7 @@ def _surfaces(mesh: Mesh, rows: I64, group: str) -> tuple[tuple[Surface, ...], I
         surface[chosen] = len(surfaces) + apart.argmin(axis=1)
         for red, green, blue in kept.tolist():
             name = f"M_{group}_{Material(kind).name.title().replace('_', '')}_{red:02x}{green:02x}{blue:02x}"
-            surfaces.append(Surface(name, Material(kind), (red, green, blue)))
+            surfaces.append(PartMaterial(name, Material(kind), (red, green, blue)))
     return tuple(surfaces), surface
 
 

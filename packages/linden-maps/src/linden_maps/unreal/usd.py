@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from linden.errors import UserError
-from linden_maps.unreal.parts import Part, Surface
+from linden_maps.unreal.parts import Part, PartMaterial
 
 
 def write_usd(parts: Sequence[Part], name: str, path: Path) -> None:
@@ -52,7 +52,7 @@ def write_usd(parts: Sequence[Part], name: str, path: Path) -> None:
     stage.GetRootLayer().Save()
 
 
-def _material(stage: Any, path: str, surface: Surface, modules: tuple[Any, Any]) -> Any:  # noqa: ANN401 - of usd-core
+def _material(stage: Any, path: str, surface: PartMaterial, modules: tuple[Any, Any]) -> Any:  # noqa: ANN401 - of usd-core
     sdf, shade = modules
     material = shade.Material.Define(stage, path)
     shader = shade.Shader.Define(stage, f"{path}/Surface")

@@ -68,7 +68,7 @@ REFUSED = "Spawn failed because of invalid actor description"
 _QUOTED = 80  # characters of a value that a sentence quotes
 
 
-class Bounds(NamedTuple):
+class AttributeBounds(NamedTuple):
     """Least and greatest value that an attribute can take, both included."""
 
     least: float
@@ -77,38 +77,38 @@ class Bounds(NamedTuple):
 
 LARGEST = 1e9
 """Of a number without bounds of its own: far beyond what anything measures, and its square still fits 32 bits."""
-ANY_INTEGER = Bounds(-(2**31), 2**31 - 1)
-ANY_NUMBER = Bounds(-LARGEST, LARGEST)
-ANY_DEVIATION = Bounds(0.0, LARGEST)
+ANY_INTEGER = AttributeBounds(-(2**31), 2**31 - 1)
+ANY_NUMBER = AttributeBounds(-LARGEST, LARGEST)
+ANY_DEVIATION = AttributeBounds(0.0, LARGEST)
 
 BOUNDS = {
-    "sensor_tick": Bounds(0.0, 1e6),
-    "image_size_x": Bounds(1, 2**31 - 1),  # sensors.camera.spec says what a picture can be
-    "image_size_y": Bounds(1, 2**31 - 1),
-    "channels": Bounds(1, 4096),  # lidars that are sold have up to 300
-    "points_per_second": Bounds(1, 20_000_000),  # lidars that are sold fire up to 5 million
-    "rotation_frequency": Bounds(-10_000.0, 10_000.0),
-    "horizontal_fov": Bounds(-360.0, 360.0),
-    "vertical_fov": Bounds(-360.0, 360.0),
-    "upper_fov": Bounds(-360.0, 360.0),
-    "lower_fov": Bounds(-360.0, 360.0),
-    "range": Bounds(0.0, 1e6),
-    "distance": Bounds(0.0, 1e6),
-    "hit_radius": Bounds(0.0, 1e3),
-    "positive_threshold": Bounds(0.01, 1e6),  # an event for every step of brightness: a smaller one never ends
-    "negative_threshold": Bounds(0.01, 1e6),
-    "scale": Bounds(0.0, 1e3),
-    "mass": Bounds(0.0, 1e7),
-    "extent_x": Bounds(0.0, 1e6),
-    "extent_y": Bounds(0.0, 1e6),
-    "extent_z": Bounds(0.0, 1e6),
-    "friction": Bounds(0.0, 1e3),
+    "sensor_tick": AttributeBounds(0.0, 1e6),
+    "image_size_x": AttributeBounds(1, 2**31 - 1),  # sensors.camera.spec says what a picture can be
+    "image_size_y": AttributeBounds(1, 2**31 - 1),
+    "channels": AttributeBounds(1, 4096),  # lidars that are sold have up to 300
+    "points_per_second": AttributeBounds(1, 20_000_000),  # lidars that are sold fire up to 5 million
+    "rotation_frequency": AttributeBounds(-10_000.0, 10_000.0),
+    "horizontal_fov": AttributeBounds(-360.0, 360.0),
+    "vertical_fov": AttributeBounds(-360.0, 360.0),
+    "upper_fov": AttributeBounds(-360.0, 360.0),
+    "lower_fov": AttributeBounds(-360.0, 360.0),
+    "range": AttributeBounds(0.0, 1e6),
+    "distance": AttributeBounds(0.0, 1e6),
+    "hit_radius": AttributeBounds(0.0, 1e3),
+    "positive_threshold": AttributeBounds(0.01, 1e6),  # an event for every step of brightness: a smaller one never ends
+    "negative_threshold": AttributeBounds(0.01, 1e6),
+    "scale": AttributeBounds(0.0, 1e3),
+    "mass": AttributeBounds(0.0, 1e7),
+    "extent_x": AttributeBounds(0.0, 1e6),
+    "extent_y": AttributeBounds(0.0, 1e6),
+    "extent_z": AttributeBounds(0.0, 1e6),
+    "friction": AttributeBounds(0.0, 1e3),
 }
 """What an attribute can take, where that is less than its type allows: what means nothing, or would take a server all
 its time and memory."""
 
 
-def bounds_of(attribute: ActorAttribute) -> Bounds:
+def bounds_of(attribute: ActorAttribute) -> AttributeBounds:
     """Return what a number can be."""
     if attribute.id in BOUNDS:
         return BOUNDS[attribute.id]

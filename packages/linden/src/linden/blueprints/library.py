@@ -31,7 +31,7 @@ SIZES = (("tiny", 0.3), ("small", 0.8), ("medium", 2.5), ("big", 5.0))
 """Greatest dimension in m up to which CARLA's word for a prop's size is taken; beyond the last it is huge."""
 
 
-class Kind(IntEnum):
+class BlueprintKind(IntEnum):
     """What an actor is to the server; 0 to 5 are the type bytes of CARLA's recorder."""
 
     OTHER = 0
@@ -53,7 +53,7 @@ class Blueprint(NamedTuple):
     """
 
     definition: ActorDefinition
-    kind: Kind
+    kind: BlueprintKind
     box: BoundingBox
     semantic_tags: bytes = b""
     mass_kg: float = 0.0
@@ -62,7 +62,7 @@ class Blueprint(NamedTuple):
     @property
     def has_stream(self) -> bool:
         """Whether its actors send measurements; lane invasion is found by the client itself."""
-        return self.kind is Kind.SENSOR and self.definition.id != "sensor.other.lane_invasion"
+        return self.kind is BlueprintKind.SENSOR and self.definition.id != "sensor.other.lane_invasion"
 
 
 class BlueprintLibrary:
@@ -128,24 +128,28 @@ def _sensors(facts: dict[str, Any]) -> Iterator[Blueprint]:
     for name, groups in facts["sensors"].items():
         roles = () if name in facts["sensors_without_place"] else SENSOR_ROLES
         own = [from_facts(facts["sensor_attributes"][group]) for group in groups]
-        yield Blueprint(_definition(f"sensor.{name}", sum(own, names(*roles))), Kind.SENSOR, DOT)
+        yield Blueprint(_definition(f"sensor.{name}", sum(own, names(*roles))), BlueprintKind.SENSOR, DOT)
 
 
 def _statics(facts: dict[str, Any]) -> Iterator[Blueprint]:
     extent = {f"extent_{axis}": 1.0 for axis in "xyz"}
     trigger = (*names(), *from_facts({"friction": 3.5, **extent}))
     yield Blueprint(
-        _definition("static.trigger.friction", trigger), Kind.TRIGGER, BoundingBox(Vector3D(), Vector3D(1.0, 1.0, 1.0))
+        _definition("static.trigger.friction", trigger),
+        BlueprintKind.TRIGGER,
+        BoundingBox(Vector3D(), Vector3D(1.0, 1.0, 1.0)),
     )
     mesh = (*names("prop"), *from_facts({"mesh_path": "", "mass": 0.0, "scale": 1.0}))
     half_m = Vector3D(0.5, 0.5, 0.5)  # CARLA's size is that of a mesh of Unreal's, which is not available here
-    yield Blueprint(_definition("static.prop.mesh", mesh), Kind.PROP, BoundingBox(Vector3D(0.0, 0.0, 0.5), half_m))
+    yield Blueprint(
+        _definition("static.prop.mesh", mesh), BlueprintKind.PROP, BoundingBox(Vector3D(0.0, 0.0, 0.5), half_m)
+    )
     for name, (length_m, width_m, height_m, tag) in facts["props"].items():
         size = next((word for word, limit_m in SIZES if max(length_m, width_m, height_m) <= limit_m), "huge")
         half_m = Vector3D(0.5 * length_m, 0.5 * width_m, 0.5 * height_m)
         yield Blueprint(
             _definition(f"static.prop.{name}", (*names("prop"), constant("size", size))),
-            Kind.PROP,
+            BlueprintKind.PROP,
             BoundingBox(Vector3D(0.0, 0.0, half_m.z), half_m),
             bytes([SemanticTag[tag.upper()]]),
             facts["prop_masses_kg"].get(name, PROP_DENSITY_KG_M3 * length_m * width_m * height_m),
@@ -157,7 +161,7 @@ def _vehicles(facts: dict[str, Any]) -> Iterator[Blueprint]:
     for name, own in facts["vehicles"].items():
         yield Blueprint(
             _definition(f"vehicle.{name}", vehicles.attributes(own, facts["colours"])),
-            Kind.VEHICLE,
+            BlueprintKind.VEHICLE,
             vehicles.box(own),
             vehicles.TAGS_OF_BASE_TYPE[own["base_type"]],
             float(own["mass_kg"]),
@@ -171,7 +175,7 @@ def _walkers(facts: dict[str, Any]) -> Iterator[Blueprint]:
         half_width_m, half_height_m = group["half_m"]
         yield Blueprint(
             _definition(f"walker.pedestrian.{number:04}", _walker_attributes(group)),
-            Kind.WALKER,
+            BlueprintKind.WALKER,
             BoundingBox(Vector3D(), Vector3D(half_width_m, half_width_m, half_height_m)),
             bytes([SemanticTag.PEDESTRIANS]),
             float(group["mass_kg"]),
@@ -187,7 +191,7 @@ def _animals(facts: dict[str, Any]) -> Iterator[Blueprint]:
             _definition(
                 f"{ANIMALS}{name}", (*_walker_attributes(group, "animal"), constant("height", float(height_m)))
             ),
-            Kind.WALKER,
+            BlueprintKind.WALKER,
             BoundingBox(Vector3D(), Vector3D(0.5 * length_m, 0.5 * width_m, 0.5 * height_m)),
             bytes([SemanticTag.DYNAMIC]),
             float(own["mass_kg"]),
@@ -217,5 +221,5 @@ def _numbers(ranges: list[str]) -> Iterator[int]:
 
 
 def _others() -> Iterator[Blueprint]:
-    yield Blueprint(_definition("controller.ai.walker", names()), Kind.CONTROLLER, DOT)
-    yield Blueprint(_definition("util.actor.empty", names()), Kind.OTHER, DOT)
+    yield Blueprint(_definition("controller.ai.walker", names()), BlueprintKind.CONTROLLER, DOT)
+    yield Blueprint(_definition("util.actor.empty", names()), BlueprintKind.OTHER, DOT)

@@ -7,17 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
 from linden.geometry import relative
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.replay.file.packets import Frame, Records, WheelTurns
-from linden.replay.interpolation import Places, within
+from linden.replay.interpolation import ActorPlaces, within
 from linden.replay.replayed_actors import ReplayedActors, ReplayedWorld
 from linden.simulation.actor_table import NO_BODY
 
-_EMBODIED = (Kind.VEHICLE, Kind.WALKER)
+_EMBODIED = (BlueprintKind.VEHICLE, BlueprintKind.WALKER)
 _FASTEST_MPS, _FASTEST_DEGPS, _FASTEST_WALKER_MPS = 1e3, 6e3, 50.0
 """As fast as physics lets a client make a body, turn it, and let a walker walk."""
 _LONGEST_COLOUR_S = 1e9
@@ -41,7 +41,7 @@ class FrameApplier:
         self._simulation, self._replayed = simulation, replayed
         self._kept: dict[str, tuple[tuple[bytes, int, int], _Found]] = {}
 
-    def put(self, where: Places) -> None:
+    def put(self, where: ActorPlaces) -> None:
         """Move the actors to their recorded places."""
         bodies, found = self._simulation.episode.bodies, self._players("places", where.id)
         embodied = found.slots != NO_BODY
@@ -75,7 +75,7 @@ class FrameApplier:
             actors.set_lamps(actor_id, bits)
 
     def _drive(self, vehicles: Records) -> None:
-        found = self._players("vehicles", vehicles["id"], Kind.VEHICLE)
+        found = self._players("vehicles", vehicles["id"], BlueprintKind.VEHICLE)
         bodies, slots, driven = self._simulation.episode.bodies, found.slots, vehicles[found.rows]
         for pedal, column in (("throttle", bodies.throttle), ("steer", bodies.steer), ("brake", bodies.brake)):
             column[slots] = within(driven[pedal], 1.0)
@@ -85,7 +85,7 @@ class FrameApplier:
 
     def _turn_wheels(self, wheels: Sequence[WheelTurns]) -> None:
         """Let the wheels of vehicles point and have rolled as recorded."""
-        found = self._players("wheels", np.array([one.id for one in wheels], np.uint32), Kind.VEHICLE)
+        found = self._players("wheels", np.array([one.id for one in wheels], np.uint32), BlueprintKind.VEHICLE)
         bodies = self._simulation.episode.bodies
         for row, slot in zip(found.rows.tolist(), found.slots.tolist(), strict=True):
             count = int(bodies.spec(slot)["wheel_count"])
@@ -99,19 +99,19 @@ class FrameApplier:
         episode, of = self._simulation.episode, self._replayed.of
         for recorded_id, door, opens in doors.tolist():
             record = episode.actors.find(of.get(recorded_id, 0))
-            if record is not None and record.kind is Kind.VEHICLE:
+            if record is not None and record.kind is BlueprintKind.VEHICLE:
                 with suppress(Refusal):
                     episode.doors.swing(record, door, opens=bool(opens))
 
     def _walk(self, walkers: Records) -> None:
-        found = self._players("walkers", walkers["id"], Kind.WALKER)
+        found = self._players("walkers", walkers["id"], BlueprintKind.WALKER)
         self._simulation.episode.bodies.walker_speed[found.slots] = np.abs(
             within(walkers["speed_mps"][found.rows], _FASTEST_WALKER_MPS)
         )
 
     def _move(self, kinematics: Records) -> None:
         """Let everybody have the velocity that was recorded, for sensors to see; CARLA leaves it at 0."""
-        found = self._players("moving", kinematics["id"], Kind.VEHICLE, Kind.WALKER)
+        found = self._players("moving", kinematics["id"], BlueprintKind.VEHICLE, BlueprintKind.WALKER)
         bodies = self._simulation.episode.bodies
         bodies.velocity[found.slots] = within(kinematics["velocity_mps"][found.rows], _FASTEST_MPS)
         turning_degps = within(kinematics["angular_velocity_degps"][found.rows], _FASTEST_DEGPS)
@@ -119,7 +119,7 @@ class FrameApplier:
 
     def _light(self, states: Records) -> None:
         episode = self._simulation.episode
-        found = self._players("lights", states["id"], Kind.TRAFFIC_LIGHT)
+        found = self._players("lights", states["id"], BlueprintKind.TRAFFIC_LIGHT)
         if not len(found.rows):
             return
         shown = states[found.rows]
@@ -129,7 +129,7 @@ class FrameApplier:
         elapsed_s = np.abs(within(shown["elapsed_s"], _LONGEST_COLOUR_S))
         episode.traffic.restore(lights, colour, elapsed_s, shown["frozen"] != 0)
 
-    def _players(self, name: str, ids: NDArray[np.uint32], *kinds: Kind) -> _Found:
+    def _players(self, name: str, ids: NDArray[np.uint32], *kinds: BlueprintKind) -> _Found:
         """Return the replayed actors among ``ids``, of some kinds or any; cached until the set of actors changes.
 
         Actors that a client has destroyed meanwhile are left out.

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.protocol.values.episode import LightState
 from linden.protocol.values.snapshot import TRAFFIC_LIGHT_ROW, VEHICLE_ROW, WALKER_ROW
 from linden.protocol.values.space import Vector3D
@@ -28,11 +28,11 @@ Rows = StructuredArray
 Indices = NDArray[np.int64]
 
 _ROLL_PITCH_YAW = [2, 0, 1]
-_NOT_PLACED = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN, Kind.SENSOR)
+_NOT_PLACED = (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN, BlueprintKind.SENSOR)
 """Kinds without recorded places in CARLA: they stand, or follow a parent."""
 
 
-class Columns(NamedTuple):
+class ActorRows(NamedTuple):
     """The rows of each kind of actor; valid until the set of actors changes."""
 
     placed: Indices
@@ -43,20 +43,20 @@ class Columns(NamedTuple):
     vehicle_records: tuple[ActorRecord, ...]
 
 
-def columns(episode: Episode) -> Columns:
+def columns(episode: Episode) -> ActorRows:
     """Return the rows of each kind of actor in the snapshot."""
     actors = episode.actors
 
-    def rows_where(*kinds: Kind) -> Indices:
+    def rows_where(*kinds: BlueprintKind) -> Indices:
         return np.array([actors.row(record.id) for record in actors if record.kind in kinds], np.int64)
 
-    return Columns(
-        placed=rows_where(*(kind for kind in Kind if kind not in _NOT_PLACED)),
-        vehicles=rows_where(Kind.VEHICLE),
-        walkers=rows_where(Kind.WALKER),
-        moving=rows_where(Kind.VEHICLE, Kind.WALKER),
-        lights=rows_where(Kind.TRAFFIC_LIGHT),
-        vehicle_records=tuple(record for record in actors if record.kind is Kind.VEHICLE),
+    return ActorRows(
+        placed=rows_where(*(kind for kind in BlueprintKind if kind not in _NOT_PLACED)),
+        vehicles=rows_where(BlueprintKind.VEHICLE),
+        walkers=rows_where(BlueprintKind.WALKER),
+        moving=rows_where(BlueprintKind.VEHICLE, BlueprintKind.WALKER),
+        lights=rows_where(BlueprintKind.TRAFFIC_LIGHT),
+        vehicle_records=tuple(record for record in actors if record.kind is BlueprintKind.VEHICLE),
     )
 
 
@@ -173,7 +173,7 @@ def _byte(share: float) -> int:
     return round(min(max(share, 0.0), 1.0) * _FULL) if share == share else 0  # noqa: PLR0124 - a damaged file's nan
 
 
-_RANK = {Kind.VEHICLE: 1, Kind.WALKER: 2}
+_RANK = {BlueprintKind.VEHICLE: 1, BlueprintKind.WALKER: 2}
 _LAST_RANK = 3
 
 

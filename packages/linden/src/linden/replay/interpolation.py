@@ -19,7 +19,7 @@ FARTHEST_M = 1e7
 _PITCH_YAW_ROLL = [1, 2, 0]
 
 
-class Places(NamedTuple):
+class ActorPlaces(NamedTuple):
     """Where everybody is; N actors of the recording."""
 
     id: NDArray[np.uint32]
@@ -30,13 +30,13 @@ class Places(NamedTuple):
     """(N, 3) pitch, yaw, roll"""
 
 
-def places(frame: Frame) -> Places:
+def places(frame: Frame) -> ActorPlaces:
     """Return where everybody was in a frame, to the last bit where the recording is one of Linden's."""
     positions = frame.positions
     ulps = frame.packets.get(PacketId.LOCATION_ULPS)
     location_m = from_file(positions["location_cm"], None if ulps is None else ulps["ulps"])
     rotation_deg = positions["rotation_deg"][:, _PITCH_YAW_ROLL]
-    return Places(positions["id"], within(location_m, FARTHEST_M), within(rotation_deg, 360.0))
+    return ActorPlaces(positions["id"], within(location_m, FARTHEST_M), within(rotation_deg, 360.0))
 
 
 def within(values: NDArray[np.floating[Any]], limit: float) -> F64:
@@ -45,7 +45,7 @@ def within(values: NDArray[np.floating[Any]], limit: float) -> F64:
     return held
 
 
-def between(before: Places, after: Places, share: float) -> Places:
+def between(before: ActorPlaces, after: ActorPlaces, share: float) -> ActorPlaces:
     """Return where everybody of ``before`` was at ``share`` in [0, 1] of the way to ``after``.
 
     Locations go straight, angles the shorter way round, each by itself as Unreal's do. Actors without a later place
@@ -60,4 +60,4 @@ def between(before: Places, after: Places, share: float) -> Places:
     location_m[there] += share * (after.location_m[target[there]] - location_m[there])
     turn_deg = after.rotation_deg[target[there]] - rotation_deg[there]
     rotation_deg[there] += share * (turn_deg - 360.0 * np.round(turn_deg / 360.0))
-    return Places(before.id, location_m, rotation_deg)
+    return ActorPlaces(before.id, location_m, rotation_deg)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.geometry import compose
 from linden.physics.columns import finite
 from linden.protocol.values.episode import LightState
@@ -31,7 +31,14 @@ from linden.structured import StructuredArray
 log = logging.getLogger("linden")
 
 M_TO_CM = 100.0
-_KINDS_OF_FILE = (Kind.OTHER, Kind.VEHICLE, Kind.WALKER, Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN, Kind.SENSOR)
+_KINDS_OF_FILE = (
+    BlueprintKind.OTHER,
+    BlueprintKind.VEHICLE,
+    BlueprintKind.WALKER,
+    BlueprintKind.TRAFFIC_LIGHT,
+    BlueprintKind.TRAFFIC_SIGN,
+    BlueprintKind.SENSOR,
+)
 """Kinds with their numbers in the file; all other kinds are ``other``."""
 
 
@@ -211,7 +218,7 @@ class _Tape:
 def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
     """Return an actor that came, at its place in the world, or relative to its parent, as in CARLA."""
     x, y, z = (finite(along, -FARTHEST_M, FARTHEST_M) for along in pose.location)  # a float32 has to hold them in cm
-    kind = record.kind if record.kind in _KINDS_OF_FILE else Kind.OTHER
+    kind = record.kind if record.kind in _KINDS_OF_FILE else BlueprintKind.OTHER
     turned = pose.rotation
     return ActorAdded(
         record.id,
@@ -224,7 +231,7 @@ def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
 
 def _has_physics(record: ActorRecord) -> bool:
     """Whether an actor is a vehicle that drives; an attached one does not."""
-    return record.kind is Kind.VEHICLE and record.slot != NO_BODY
+    return record.kind is BlueprintKind.VEHICLE and record.slot != NO_BODY
 
 
 def _parents(come: list[ActorRecord]) -> StructuredArray:
@@ -233,7 +240,7 @@ def _parents(come: list[ActorRecord]) -> StructuredArray:
 
 def _boxes(come: list[ActorRecord]) -> StructuredArray:
     """Return the local boxes of actors that came; signs have trigger volumes instead."""
-    found = [record for record in come if record.kind not in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)]
+    found = [record for record in come if record.kind not in (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)]
     boxes = np.zeros(len(found), layouts.BOX)
     for place, record in enumerate(found):
         boxes["id"][place] = record.id
@@ -244,7 +251,7 @@ def _boxes(come: list[ActorRecord]) -> StructuredArray:
 
 def _trigger_volumes(episode: Episode, come: list[ActorRecord]) -> StructuredArray:
     """Return the trigger volumes, in the world, of lights and signs that came with the map."""
-    found = [record for record in come if record.kind in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)]
+    found = [record for record in come if record.kind in (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)]
     boxes = np.zeros(len(found), layouts.BOX)
     for place, record in enumerate(found):
         centre = compose(episode.transform(record.id), Transform(record.box.location, record.box.rotation))

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from linden.blueprints.library import BlueprintLibrary, Kind
+from linden.blueprints.library import BlueprintKind, BlueprintLibrary
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.control import VehicleControl, WalkerControl
@@ -81,7 +81,7 @@ class ReplayedActors:
             return
         self.of[actor.id] = found.id
         self.version += 1
-        if found.kind in (Kind.VEHICLE, Kind.WALKER) and found.slot != NO_BODY:
+        if found.kind in (BlueprintKind.VEHICLE, BlueprintKind.WALKER) and found.slot != NO_BODY:
             bodies = self._simulation.episode.bodies
             bodies.set_simulate(found.slot, simulate=False)
             bodies.collides[found.slot] = False
@@ -112,7 +112,10 @@ class ReplayedActors:
         """Return the light or sign of the map that stands at a place."""
         episode = self._simulation.episode
         for record in episode.actors:
-            if record.kind in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN) and record.description.id == type_id:
+            if (
+                record.kind in (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)
+                and record.description.id == type_id
+            ):
                 at = episode.transform(record.id).location
                 if max(abs(a - b) for a, b in zip(at, location, strict=True)) <= _SAME_PLACE_M:
                     return record
@@ -175,13 +178,17 @@ class ReplayedActors:
         bodies = episode.bodies
         for actor_id in self.of.values():
             record = episode.actors.find(actor_id)
-            if record is None or record.slot == NO_BODY or record.kind not in (Kind.VEHICLE, Kind.WALKER):
+            if (
+                record is None
+                or record.slot == NO_BODY
+                or record.kind not in (BlueprintKind.VEHICLE, BlueprintKind.WALKER)
+            ):
                 continue
             bodies.collides[record.slot] = True
             bodies.set_simulate(record.slot, simulate=True)
             bodies.set_target_angular_velocity(record.slot, Vector3D())
             bodies.set_target_velocity(record.slot, Vector3D())
-            if record.kind is Kind.VEHICLE:
+            if record.kind is BlueprintKind.VEHICLE:
                 bodies.set_control(record.slot, VehicleControl(gear=1))
             else:
                 bodies.set_walker_control(record.slot, WalkerControl())

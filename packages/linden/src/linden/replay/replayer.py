@@ -15,8 +15,8 @@ from linden.protocol.values.space import Transform
 from linden.replay import frame_records as recorded_lamps
 from linden.replay.apply_frame import FrameApplier
 from linden.replay.file.packets import Frame, RecordingError
-from linden.replay.file.track import Track
-from linden.replay.interpolation import Places, between, places
+from linden.replay.file.track import RecordingTrack
+from linden.replay.interpolation import ActorPlaces, between, places
 from linden.replay.replayed_actors import ReplayedActors, ReplayedWorld, Rules
 
 log = logging.getLogger("linden")
@@ -25,7 +25,7 @@ _SAME_MOMENT_S = 1e-6
 """Moments closer than this are one: what sums of steps differ by is far less, and no frame is so short."""
 
 
-class Plan(NamedTuple):
+class ReplayPlan(NamedTuple):
     """What of a recording is replayed.
 
     ``start_s`` counts from the recording's end where it is negative. ``duration_s`` 0 is all that follows. The
@@ -54,7 +54,7 @@ class Replayer:
         self.ignore_spectator = True
         self._run: _Run | None = None
 
-    def start(self, simulation: ReplayedWorld, track: Track, plan: Plan) -> "Span":
+    def start(self, simulation: ReplayedWorld, track: RecordingTrack, plan: ReplayPlan) -> "Span":
         """Replay a recording from now on, in place of the one under way; closes it at the end.
 
         Raises:
@@ -110,7 +110,7 @@ class Span(NamedTuple):
 class _Run:
     """A replay under way."""
 
-    def __init__(self, simulation: ReplayedWorld, track: Track, plan: Plan, rules: Rules) -> None:
+    def __init__(self, simulation: ReplayedWorld, track: RecordingTrack, plan: ReplayPlan, rules: Rules) -> None:
         self.recording = track.recording
         self._simulation, self._plan = simulation, plan
         self._frames, self._elapsed_s = track.places, track.elapsed_s
@@ -141,7 +141,7 @@ class _Run:
         self._applier.show(frame)
         self._follow()
 
-    def _places(self, at: int, now_s: float) -> Places:
+    def _places(self, at: int, now_s: float) -> ActorPlaces:
         """Return the places of all actors at ``now_s``, which is in frame ``at``."""
         here = places(self._frame(at))
         since_s = now_s - float(self._elapsed_s[at])
@@ -191,6 +191,6 @@ class _Run:
         self.recording.close()
 
 
-def _span(total_s: float, plan: Plan) -> Span:
+def _span(total_s: float, plan: ReplayPlan) -> Span:
     start_s = max(0.0, total_s + plan.start_s) if plan.start_s < 0.0 else min(plan.start_s, total_s)
     return Span(total_s, start_s, start_s + plan.duration_s if plan.duration_s > 0.0 else total_s)

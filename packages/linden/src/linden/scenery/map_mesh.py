@@ -13,7 +13,7 @@ from linden.maps.opendrive.parse import parse
 from linden.maps.records import NAMES_BETWEEN, STREET_NAME_SIGN
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
+from linden.scenery.patches import ALL_SIDES, PatchFrames, PatchLook, boxes
 from linden.scenery.roadside.buildings import buildings, furniture
 from linden.scenery.roadside.houses import houses, plans
 from linden.scenery.roadside.name_signs import blades_with_names, posts
@@ -23,7 +23,7 @@ from linden.scenery.roadside.trees import Planted, trees, woods
 from linden.scenery.roadside.wires import shelters, utility_poles
 from linden.scenery.roadside.yards import fences, hedges, paved_yards, porches
 from linden.scenery.scene.linden_survey import surveyed
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 from linden.scenery.scene.south_linden import free_lots
 from linden.scenery.scene.woodland import far_from_roads
 from linden.scenery.streets.junction_floors import floors
@@ -57,7 +57,7 @@ def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
 
 def _beside(facts: MapFacts, scene: Scene, lawn: Mesh) -> Mesh:
     """Return what only Linden has and what is nothing to run into: drives, paths, the railroad."""
-    if not (scene.things["kind"] == Kind.SHELTER).any():
+    if not (scene.things["kind"] == ObjectKind.SHELTER).any():
         return join([])
     line = surveyed(facts.geo_origin_deg).railroad_m
     under = Ground.from_triangles(lawn.vertices_m, lawn.triangles)
@@ -100,7 +100,7 @@ class _Of:
     def __init__(self, facts: MapFacts, scene: Scene, rows: NDArray[np.intp]) -> None:
         self.facts = facts
         self.things = scene.things[rows]
-        self.frames = Frames(self.things["base"], self.things["yaw_rad"])
+        self.frames = PatchFrames(self.things["base"], self.things["yaw_rad"])
         self._first = np.searchsorted(scene.boxes["thing"], rows).astype(np.int32)
         self._boxes = scene.boxes
         self.every_box = np.flatnonzero(np.isin(scene.boxes["thing"], rows)).astype(np.int32)
@@ -148,7 +148,7 @@ def _walls(of: _Of) -> Mesh:
         of.frames,
         half * (0.0, 0.0, 1.0),
         half,
-        Look(Material.CONCRETE, SemanticTag.WALLS, CONCRETE, of.box(0)),
+        PatchLook(Material.CONCRETE, SemanticTag.WALLS, CONCRETE, of.box(0)),
         ALL_SIDES,
     )
 
@@ -179,7 +179,7 @@ def _shelters(of: _Of) -> Mesh:
 
 def _buildings(of: _Of) -> Mesh:
     feet = of.boxes["centre"] - of.boxes["half"] * (0.0, 0.0, 1.0)
-    return buildings(Frames(feet, of.boxes["yaw_rad"]), of.boxes["half"], of.boxes["thing"], of.every_box)
+    return buildings(PatchFrames(feet, of.boxes["yaw_rad"]), of.boxes["half"], of.boxes["thing"], of.every_box)
 
 
 def _benches(of: _Of) -> Mesh:
@@ -198,7 +198,7 @@ def _name_signs(of: _Of) -> Mesh:
     signed = [thing.name.split(NAMES_BETWEEN) for thing in of.facts.standing if thing.kind == STREET_NAME_SIGN]
     names = [name for sign in signed for name in sign]
     is_blade = of.boxes["tag"] == SemanticTag.TRAFFIC_SIGNS
-    blades = Frames(of.boxes["centre"][is_blade], of.boxes["yaw_rad"][is_blade])
+    blades = PatchFrames(of.boxes["centre"][is_blade], of.boxes["yaw_rad"][is_blade])
     return join(
         [
             posts(of.frames, of.half_m(0), of.box(0)),
@@ -208,21 +208,21 @@ def _name_signs(of: _Of) -> Mesh:
 
 
 _MAKERS = {
-    Kind.TRAFFIC_LIGHT: _lights,
-    Kind.TRAFFIC_SIGN: _signs,
-    Kind.HOUSE: _houses,
-    Kind.TREE: _trees,
-    Kind.STREET_LAMP: _lamps,
-    Kind.WALL: _walls,
-    Kind.PORCH: _porches,
-    Kind.HEDGE: _hedges,
-    Kind.FENCE: _fences,
-    Kind.PARKED_CAR: _parked,
-    Kind.UTILITY_POLE: _poles,
-    Kind.SHELTER: _shelters,
-    Kind.BUILDING: _buildings,
-    Kind.BENCH: _benches,
-    Kind.BIN: _bins,
-    Kind.MAILBOX: _mailboxes,
-    Kind.STREET_NAME_SIGN: _name_signs,
+    ObjectKind.TRAFFIC_LIGHT: _lights,
+    ObjectKind.TRAFFIC_SIGN: _signs,
+    ObjectKind.HOUSE: _houses,
+    ObjectKind.TREE: _trees,
+    ObjectKind.STREET_LAMP: _lamps,
+    ObjectKind.WALL: _walls,
+    ObjectKind.PORCH: _porches,
+    ObjectKind.HEDGE: _hedges,
+    ObjectKind.FENCE: _fences,
+    ObjectKind.PARKED_CAR: _parked,
+    ObjectKind.UTILITY_POLE: _poles,
+    ObjectKind.SHELTER: _shelters,
+    ObjectKind.BUILDING: _buildings,
+    ObjectKind.BENCH: _benches,
+    ObjectKind.BIN: _bins,
+    ObjectKind.MAILBOX: _mailboxes,
+    ObjectKind.STREET_NAME_SIGN: _name_signs,
 }

@@ -16,7 +16,7 @@ from linden.structured import StructuredArray
 F64 = NDArray[np.float64]
 
 
-class Look(NamedTuple):
+class PatchLook(NamedTuple):
     """What a patch is; colour and object may be given for each of N patches."""
 
     material: Material
@@ -25,7 +25,7 @@ class Look(NamedTuple):
     object: ArrayLike = NO_OBJECT  # or (N,)
     lamp: LampOf = LampOf.NONE
 
-    def of(self, rows: NDArray[np.intp]) -> "Look":
+    def of(self, rows: NDArray[np.intp]) -> "PatchLook":
         """Return the look of those of the patches."""
         colour, number = np.asarray(self.colour), np.asarray(self.object)
         return self._replace(
@@ -33,7 +33,7 @@ class Look(NamedTuple):
         )
 
 
-def polygons(corners_m: F64, look: Look, towards: ArrayLike | None = None) -> Mesh:
+def polygons(corners_m: F64, look: PatchLook, towards: ArrayLike | None = None) -> Mesh:
     """Return convex polygons (N, K, 3) as fans, looking ``towards`` (3,) or (N, 3) if that is given."""
     count, sides = corners_m.shape[:2]
     if towards is not None:
@@ -56,7 +56,7 @@ def _turned_round(corners_m: F64, towards: F64) -> F64:
     return turned
 
 
-def _faces(count: int, each: int, look: Look) -> StructuredArray:
+def _faces(count: int, each: int, look: PatchLook) -> StructuredArray:
     """Return ``each`` faces for each of ``count`` patches."""
     made = np.zeros((count, each), FACE)
     made["material"], made["tag"], made["lamp"] = look.material, look.tag, look.lamp
@@ -65,7 +65,7 @@ def _faces(count: int, each: int, look: Look) -> StructuredArray:
     return made.reshape(-1)
 
 
-class Frames(NamedTuple):
+class PatchFrames(NamedTuple):
     """Where N things stand: the frame in which their parts are given, x ahead, y to the right, z up."""
 
     base_m: F64  # (N, 3), world
@@ -89,9 +89,9 @@ class Frames(NamedTuple):
         x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
         return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=-1)
 
-    def of(self, rows: NDArray[np.intp]) -> "Frames":
+    def of(self, rows: NDArray[np.intp]) -> "PatchFrames":
         """Return the frames of those of the things."""
-        return Frames(self.base_m[rows], self.yaw_rad[rows])
+        return PatchFrames(self.base_m[rows], self.yaw_rad[rows])
 
 
 _CORNERS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], np.float64)
@@ -109,7 +109,7 @@ ALL_SIDES = tuple(_SIDES)
 
 
 def boxes(
-    frames: Frames, centre_m: ArrayLike, half_m: ArrayLike, look: Look, sides: tuple[str, ...] = ABOVE_GROUND
+    frames: PatchFrames, centre_m: ArrayLike, half_m: ArrayLike, look: PatchLook, sides: tuple[str, ...] = ABOVE_GROUND
 ) -> Mesh:
     """Return boxes; ``centre_m`` and ``half_m`` are (3,) or (N, 3) in the things' own frames."""
     centre = np.broadcast_to(np.asarray(centre_m, np.float64), (len(frames), 3))
@@ -124,7 +124,7 @@ def boxes(
 
 
 def prisms(
-    begin_m: F64, end_m: F64, radii_m: tuple[ArrayLike, ArrayLike], sides: int, look: Look, *, lid: bool = True
+    begin_m: F64, end_m: F64, radii_m: tuple[ArrayLike, ArrayLike], sides: int, look: PatchLook, *, lid: bool = True
 ) -> Mesh:
     """Return tubes with ``sides`` flat sides from ``begin_m`` to ``end_m`` (N, 3), closed there if they have a lid.
 
@@ -156,7 +156,9 @@ def prisms(
     )
 
 
-def strips(first_m: F64, second_m: F64, continues: NDArray[np.bool_], look: Look, towards: F64 | None = None) -> Mesh:
+def strips(
+    first_m: F64, second_m: F64, continues: NDArray[np.bool_], look: PatchLook, towards: F64 | None = None
+) -> Mesh:
     """Return quads between two lines of places (P, 3); row k has one to row k + 1 where ``continues``.
 
     ``towards`` (P, 3) says where each looks.

@@ -101,7 +101,7 @@ LINEAR = _linear()
 F64 = NDArray[np.float64]
 
 
-class Look(NamedTuple):
+class SensorLook(NamedTuple):
     """One sensor in one frame."""
 
     seen: Seen
@@ -124,7 +124,7 @@ class Look(NamedTuple):
 class LookingSensor(Protocol):
     """A sensor over time."""
 
-    def measure(self, look: Look) -> object | None:
+    def measure(self, look: SensorLook) -> object | None:
         """Return a reading, None where there is nothing to tell."""
         ...
 
@@ -137,6 +137,6 @@ class LookingSensor(Protocol):
 class AsynchronousSensor(Protocol):
     """A sensor with asynchronous measurements: those of a frame all begin before the first is read."""
 
-    def expect(self, look: Look) -> None:
+    def expect(self, look: SensorLook) -> None:
         """Begin the measurement that ``measure`` returns for the same look."""
         ...

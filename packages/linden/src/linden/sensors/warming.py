@@ -19,7 +19,7 @@ from linden.sensors.casting.choose import caster_of
 from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
 from linden.sensors.devices.lidar.sensor import owners_of
 from linden.sensors.devices.lidar.sweep import Chances, Losses, points_of, semantic_points_of
-from linden.sensors.view import Look, Seen, table_of
+from linden.sensors.view import Seen, SensorLook, table_of
 
 _FAN = Fan(2, 0.0, -90.0, 360.0, 10.0, 80, 10.0)
 _LOSSES = Losses(0.004, 0.45, 0.8, 0.4, 0.0, 0)
@@ -63,7 +63,7 @@ def warm_cameras() -> None:
     for blueprint, make in CAMERAS.items():
         camera = make(library.validate(ActorDescription(0, blueprint, size)))
         for number in range(2):
-            camera.measure(Look(seen, {}, pose, pose, np.zeros(3), 0, number, 0.05))
+            camera.measure(SensorLook(seen, {}, pose, pose, np.zeros(3), 0, number, 0.05))
 
 
 STEPS: tuple[Callable[[], None], ...] = (warm_rays, warm_cameras)

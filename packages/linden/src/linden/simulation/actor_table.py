@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import ActorState
@@ -36,7 +36,7 @@ class ActorRecord:
 
     id: int
     description: ActorDescription
-    kind: Kind
+    kind: BlueprintKind
     box: BoundingBox
     semantic_tags: bytes
     parent_id: int = 0
@@ -119,7 +119,10 @@ class ActorTable:
     def lamps(self) -> list[tuple[int, int]]:
         """Return id and lamps of every vehicle; a Traffic Manager asks for them in each step."""
         if self._lamps is None or self._lamps[0] != self.version:
-            self._lamps = self.version, [(each.id, each.light_state) for each in self if each.kind is Kind.VEHICLE]
+            self._lamps = (
+                self.version,
+                [(each.id, each.light_state) for each in self if each.kind is BlueprintKind.VEHICLE],
+            )
         return self._lamps[1]
 
     def of_slot(self, slot: int) -> ActorRecord:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import ANIMALS, Kind
+from linden.blueprints.library import ANIMALS, BlueprintKind
 from linden.blueprints.skeleton import blended, frame_of, in_component, skeleton, transform_of, walking_pose
 from linden.errors import Refusal
 from linden.physics.columns import finite
@@ -25,7 +25,7 @@ _WHEELS = {
 }
 """Names of CARLA's vehicle skeletons, in the order of the physics control's wheels."""
 
-_COMPONENTS = {Kind.WALKER: ("CollisionCylinder", "CharacterMesh0"), Kind.VEHICLE: ("VehicleMesh",)}
+_COMPONENTS = {BlueprintKind.WALKER: ("CollisionCylinder", "CharacterMesh0"), BlueprintKind.VEHICLE: ("VehicleMesh",)}
 """Names that Unreal gives the parts of a character and of a wheeled vehicle; the first is the root."""
 
 _ROOT = ("DefaultSceneRoot",)
@@ -110,7 +110,7 @@ def _animated(episode: EpisodeState, actor_id: int) -> F64:
 
 def _is_person(record: ActorRecord) -> bool:
     """Whether it has CARLA's skeleton: a walker that is no animal."""
-    return record.kind is Kind.WALKER and not record.description.id.startswith(ANIMALS)
+    return record.kind is BlueprintKind.WALKER and not record.description.id.startswith(ANIMALS)
 
 
 def bones_of(episode: EpisodeState, actor_id: int) -> Bones:
@@ -123,7 +123,7 @@ def bones_of(episode: EpisodeState, actor_id: int) -> Bones:
     if _is_person(record) and record.slot != NO_BODY:
         pose = episode.poses.shown(episode, actor_id)
         return Bones(skeleton().names, pose, _mesh_frame(record) @ in_component(pose))
-    if record.kind is Kind.VEHICLE and record.slot != NO_BODY:
+    if record.kind is BlueprintKind.VEHICLE and record.slot != NO_BODY:
         frames = np.stack([np.eye(4), *_wheels(episode, record.slot)])
         return Bones(("Vehicle_Base", *_WHEELS[len(frames) - 1]), frames, frames)
     raise ActorRefusal("Component could not be found in this actor:  Component Name: SkinnedMeshComponent", actor_id)
@@ -147,7 +147,7 @@ def sockets_of(episode: EpisodeState, actor_id: int) -> Bones:
         ActorRefusal: no such actor.
     """
     record = episode.actors.get(actor_id)
-    if (_is_person(record) or record.kind is Kind.VEHICLE) and record.slot != NO_BODY:
+    if (_is_person(record) or record.kind is BlueprintKind.VEHICLE) and record.slot != NO_BODY:
         return bones_of(episode, actor_id)
     return Bones((), np.empty((0, 4, 4)), np.empty((0, 4, 4)))
 
@@ -192,12 +192,12 @@ def component(episode: EpisodeState, actor_id: int, name: str) -> F64:
     record = episode.actors.get(actor_id)
     if name in _BLINKERS:
         return _blinker_frame(record, *_BLINKERS[name])
-    return _mesh_frame(record) if record.kind is Kind.WALKER and name != names[0] else np.eye(4)
+    return _mesh_frame(record) if record.kind is BlueprintKind.WALKER and name != names[0] else np.eye(4)
 
 
 def _has_blinkers(episode: EpisodeState, record: ActorRecord) -> bool:
     """Whether this is a vehicle with four wheels; CARLA's bicycles have no lamps, and its motorcycles other ones."""
-    has_body = record.kind is Kind.VEHICLE and record.slot != NO_BODY
+    has_body = record.kind is BlueprintKind.VEHICLE and record.slot != NO_BODY
     return has_body and int(episode.bodies.spec(record.slot)["wheel_count"]) == len(_WHEELS[4])
 
 

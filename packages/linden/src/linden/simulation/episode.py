@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import DOT, Kind
+from linden.blueprints.library import DOT, BlueprintKind
 from linden.maps.library import LoadedMap
 from linden.physics.contact.statics import Statics
 from linden.protocol.values.actors import ActorDescription
@@ -59,7 +59,7 @@ class Episode(EpisodeState):
         self.doors, self.friction = Doors(), RoadFriction()
         self.sockets = Sockets()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
-        self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
+        self.spectator_id = self._add_fixture("spectator", BlueprintKind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()
         first_light = self.actors.row(self.light_ids[0]) if self.light_ids else 0
         self._light_rows = slice(
@@ -72,7 +72,7 @@ class Episode(EpisodeState):
         self._seen_version = -1
 
     def _add_fixture(
-        self, type_id: str, kind: Kind, pose: Transform, box: BoundingBox, tags: bytes = b""
+        self, type_id: str, kind: BlueprintKind, pose: Transform, box: BoundingBox, tags: bytes = b""
     ) -> ActorRecord:
         record = ActorRecord(
             id=self.actors.next_id(),
@@ -90,7 +90,9 @@ class Episode(EpisodeState):
         for index, item in enumerate(self.traffic.actors):
             is_light = index in self.traffic.lights
             kind, layout = (
-                (Kind.TRAFFIC_LIGHT, TRAFFIC_LIGHT_ROW) if is_light else (Kind.TRAFFIC_SIGN, TRAFFIC_SIGN_ROW)
+                (BlueprintKind.TRAFFIC_LIGHT, TRAFFIC_LIGHT_ROW)
+                if is_light
+                else (BlueprintKind.TRAFFIC_SIGN, TRAFFIC_SIGN_ROW)
             )
             record = self._add_fixture(item.type_id, kind, item.transform, item.box, item.semantic_tags)
             row = self.actors.rows.view(layout)[self.actors.row(record.id)]
@@ -122,7 +124,7 @@ class Episode(EpisodeState):
         Raises:
             ActorRefusal: no such actor, or no traffic light.
         """
-        if self.actors.get(actor_id).kind is not Kind.TRAFFIC_LIGHT:
+        if self.actors.get(actor_id).kind is not BlueprintKind.TRAFFIC_LIGHT:
             raise ActorRefusal("Actor is not a traffic light", actor_id)
         return self.light_ids.index(actor_id)
 
@@ -163,11 +165,11 @@ class Episode(EpisodeState):
     def _survey(self) -> None:
         """Note which rows are vehicles' and walkers'; called when the set of actors has changed."""
         self._keep_limits()
-        self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
+        self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(BlueprintKind.VEHICLE)
         self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)
         order = np.argsort(self._vehicle_actor_id)
         self._vehicle_index = self._vehicle_actor_id[order].astype(np.int64), self._vehicle_slots[order]
-        self._walker_ids, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
+        self._walker_ids, self._walker_slots, self._walker_rows = self._embodied(BlueprintKind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]
         )
@@ -177,7 +179,7 @@ class Episode(EpisodeState):
         self._rows_of_lights: StructuredArray = self.actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
         self._seen_version = self.actors.version
 
-    def _embodied(self, kind: Kind) -> tuple[list[int], NDArray[np.int32], NDArray[np.int32]]:
+    def _embodied(self, kind: BlueprintKind) -> tuple[list[int], NDArray[np.int32], NDArray[np.int32]]:
         """Return ids, slots and rows of all actors of a kind that have a body."""
         found = [record for record in self.actors if record.kind is kind and record.slot != NO_BODY]
         slots = np.array([record.slot for record in found], np.int32)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
 from linden.geometry import rotation_matrix
 from linden.physics.contact.statics import Statics
@@ -20,7 +20,7 @@ from linden.simulation.episode import Episode
 SAME_SURFACE_M = 0.05
 """Lanes lie over one another in junctions, and share their edges: road met again this soon is the same road."""
 
-_OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
+_OF_SIGNALS = (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)
 
 
 class _Moving(NamedTuple):

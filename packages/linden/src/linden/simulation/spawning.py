@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Blueprint, Kind
+from linden.blueprints.library import Blueprint, BlueprintKind
 from linden.errors import Refusal
 from linden.geometry import compose
 from linden.physics.bodies import Bodies
@@ -56,13 +56,13 @@ def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
     return Solid(BoundingBox(centre, half), weight_kg, mass_kg > 0.0)
 
 
-NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
+NEEDS_ROOM = (BlueprintKind.VEHICLE, BlueprintKind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
 
 _REACH_M = 8.0
 """No corner of a vehicle or walker lies further from its origin; the longest, a bus, has 5.5 m."""
 
-_OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
+_OF_THE_MAP = (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)
 
 
 def spawn(
@@ -78,7 +78,7 @@ def spawn(
     world_pose = compose(episode.transform(parent_id), pose) if parent_id else pose
     made_trigger = trigger(description) if description.id == FRICTION_TRIGGER else None
     box = made_trigger.box if made_trigger else blueprint.box
-    if blueprint.kind is Kind.PROP:
+    if blueprint.kind is BlueprintKind.PROP:
         box = solid(blueprint, description).box
     if blueprint.kind in NEEDS_ROOM:
         _refuse_without_room(episode, blueprint, world_pose)
@@ -106,9 +106,9 @@ def embody(bodies: Bodies, blueprint: Blueprint, description: ActorDescription, 
         slot = bodies.add_vehicle(model.physics, pose, blueprint.box, model.wheel_offsets_m, model.undercarriage)
         bodies.set_sticky(slot, sticky=description.attribute("sticky_control") == "true")
         return slot
-    if blueprint.kind is Kind.WALKER:
+    if blueprint.kind is BlueprintKind.WALKER:
         return bodies.add_walker(pose, blueprint.box, blueprint.mass_kg)
-    if blueprint.kind is Kind.PROP:
+    if blueprint.kind is BlueprintKind.PROP:
         made = solid(blueprint, description)
         slot = bodies.add_prop(pose, made.box, made.mass_kg)
         bodies.set_simulate(slot, simulate=made.loose)

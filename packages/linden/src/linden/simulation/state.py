@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.maps.library import LoadedMap
 from linden.physics.bodies import Bodies
 from linden.physics.step import CONTACT
@@ -87,7 +87,7 @@ class EpisodeState(ABC):
         Raises:
             ActorRefusal: no such actor, or no vehicle.
         """
-        return self._slot_of_kind(actor_id, Kind.VEHICLE, "Actor is not a Vehicle")
+        return self._slot_of_kind(actor_id, BlueprintKind.VEHICLE, "Actor is not a Vehicle")
 
     def walker(self, actor_id: int) -> int:
         """Return the slot of a walker.
@@ -95,9 +95,9 @@ class EpisodeState(ABC):
         Raises:
             ActorRefusal: no such actor, or no walker.
         """
-        return self._slot_of_kind(actor_id, Kind.WALKER, "Actor is not a Walker")
+        return self._slot_of_kind(actor_id, BlueprintKind.WALKER, "Actor is not a Walker")
 
-    def _slot_of_kind(self, actor_id: int, kind: Kind, otherwise: str) -> int:
+    def _slot_of_kind(self, actor_id: int, kind: BlueprintKind, otherwise: str) -> int:
         record = self.actors.get(actor_id)
         if record.kind is not kind or record.slot == NO_BODY:
             raise ActorRefusal(otherwise, actor_id)

@@ -18,7 +18,7 @@ from linden.protocol.values.episode import LightState
 from linden.scenery.scene.debug_shapes import DebugShapes
 from linden.scenery.scene.lamp_states import Lamps
 from linden.scenery.scene.mapped import mapped, plain
-from linden.scenery.scene.objects import Kind, Scene, join
+from linden.scenery.scene.objects import ObjectKind, Scene, join
 from linden.scenery.scene.posts import Post, posts, walls
 from linden.scenery.scene.south_linden import home
 from linden.traffic.signal_actors import NO_LIGHT, Signals
@@ -112,7 +112,7 @@ class Surroundings:
                 unknown.append(object_id)
                 continue
             thing = int(scene.boxes["thing"][box])
-            whole = scene.things["kind"][thing] != Kind.TRAFFIC_LIGHT
+            whole = scene.things["kind"][thing] != ObjectKind.TRAFFIC_LIGHT
             self._enabled[scene.boxes_of(thing) if whole else box] = enabled
         self._refresh()
         return unknown

@@ -49,7 +49,7 @@ class LightPlan(NamedTuple):
     """(C, 3) of red, yellow, green: what ``initial`` starts with."""
 
 
-class LightState(NamedTuple):
+class CycleState(NamedTuple):
     """Everything that changes."""
 
     colour: U8
@@ -95,10 +95,10 @@ def plan(groups: Sequence[Sequence[Sequence[int]]], times_s: F64 | None = None) 
     )
 
 
-def initial(plan: LightPlan) -> LightState:
+def initial(plan: LightPlan) -> CycleState:
     """Return the state at the start of an episode: in every group the first controller is green, all others red."""
     controllers, groups = len(plan.group_of_controller), len(plan.first_controller) - 1
-    dark = LightState(
+    dark = CycleState(
         np.full(len(plan.controller_of_light), TrafficLightState.RED, np.uint8),
         np.full(controllers, LAST_STAGE, np.int32),
         plan.first_controller[:-1].copy(),
@@ -110,7 +110,7 @@ def initial(plan: LightPlan) -> LightState:
     return reset(plan, dark, np.arange(groups, dtype=np.int32))
 
 
-def step(plan: LightPlan, state: LightState, dt_s: float) -> LightState:
+def step(plan: LightPlan, state: CycleState, dt_s: float) -> CycleState:
     """Let time pass in every group that is not frozen; a stage that is over gives way to the next, at most one a step.
 
     As in CARLA a stage lasts until its time is exceeded, and what is left of the step is not counted to the next.
@@ -121,7 +121,7 @@ def step(plan: LightPlan, state: LightState, dt_s: float) -> LightState:
     return _next_stage(plan, state, np.flatnonzero(over)) if over.any() else state
 
 
-def _next_stage(plan: LightPlan, state: LightState, groups: Indices) -> LightState:
+def _next_stage(plan: LightPlan, state: CycleState, groups: Indices) -> CycleState:
     """Show the next colour of these groups' controllers, or where it was the last, the first of the next controller."""
     stage, turn, elapsed_s = state.stage.copy(), state.turn.copy(), state.elapsed_s.copy()
     done = groups[stage[turn[groups]] == LAST_STAGE]
@@ -133,7 +133,7 @@ def _next_stage(plan: LightPlan, state: LightState, groups: Indices) -> LightSta
     return _timed(_show(plan, state._replace(stage=stage, turn=turn, elapsed_s=elapsed_s), turn[groups]))
 
 
-def _show(plan: LightPlan, state: LightState, controllers: Indices) -> LightState:
+def _show(plan: LightPlan, state: CycleState, controllers: Indices) -> CycleState:
     """Give the lights of these controllers the colour of their stage."""
     lights = np.isin(plan.controller_of_light, controllers)
     colour = state.colour.copy()
@@ -141,13 +141,13 @@ def _show(plan: LightPlan, state: LightState, controllers: Indices) -> LightStat
     return state._replace(colour=colour)
 
 
-def _timed(state: LightState) -> LightState:
+def _timed(state: CycleState) -> CycleState:
     """Bring ``lasts_s`` up to date with what it follows from."""
     times_s = state.times_s[state.turn, STAGES[state.stage[state.turn]]]
     return state._replace(lasts_s=np.where(state.pace > 0.0, times_s, np.inf))
 
 
-def reset(plan: LightPlan, state: LightState, groups: Indices) -> LightState:
+def reset(plan: LightPlan, state: CycleState, groups: Indices) -> CycleState:
     """Begin the cycle of these groups anew: all red, but green for their first controllers. Times and freezing stay."""
     stage, turn, elapsed_s = state.stage.copy(), state.turn.copy(), state.elapsed_s.copy()
     members = np.isin(plan.group_of_controller, groups)
@@ -158,34 +158,34 @@ def reset(plan: LightPlan, state: LightState, groups: Indices) -> LightState:
     return _timed(_show(plan, state._replace(stage=stage, turn=turn, elapsed_s=elapsed_s), np.flatnonzero(members)))
 
 
-def with_colour(state: LightState, light: int, colour: TrafficLightState) -> LightState:
+def with_colour(state: CycleState, light: int, colour: TrafficLightState) -> CycleState:
     """Give one light a colour; it keeps it until its controller changes the next time."""
     colours = state.colour.copy()
     colours[light] = colour
     return state._replace(colour=colours)
 
 
-def with_time(plan: LightPlan, state: LightState, light: int, colour: TrafficLightState, time_s: float) -> LightState:
+def with_time(plan: LightPlan, state: CycleState, light: int, colour: TrafficLightState, time_s: float) -> CycleState:
     """Set for how long red, yellow or green lasts: for all lights of the same controller, from now on."""
     times_s = state.times_s.copy()
     times_s[plan.controller_of_light[light], colour] = time_s
     return _timed(state._replace(times_s=times_s))
 
 
-def with_frozen(state: LightState, groups: Indices, *, frozen: bool) -> LightState:
+def with_frozen(state: CycleState, groups: Indices, *, frozen: bool) -> CycleState:
     """Stop or restart time in these groups."""
     pace = state.pace.copy()
     pace[groups] = 0.0 if frozen else 1.0
     return _timed(state._replace(pace=pace))
 
 
-def elapsed_s(plan: LightPlan, state: LightState) -> F64:
+def elapsed_s(plan: LightPlan, state: CycleState) -> F64:
     """Return for each light (L,) how long its controller's stage has lasted, as CARLA tells its clients."""
     has_turn = state.turn[plan.group_of_light] == plan.controller_of_light
     return np.where(has_turn, state.elapsed_s[plan.group_of_light], 0.0)
 
 
-def is_frozen(plan: LightPlan, state: LightState) -> Flags:
+def is_frozen(plan: LightPlan, state: CycleState) -> Flags:
     """Return for each light (L,) whether time stands still for it."""
     frozen: Flags = state.pace[plan.group_of_light] == 0.0
     return frozen
@@ -193,12 +193,12 @@ def is_frozen(plan: LightPlan, state: LightState) -> Flags:
 
 def restored(
     plan: LightPlan,
-    state: LightState,
+    state: CycleState,
     lights: NDArray[np.integer[Any]],
     colour: U8,
     elapsed_s: F64,
     frozen: NDArray[np.bool_],
-) -> LightState:
+) -> CycleState:
     """Return the state with these lights (N,) as given, each (N,); all others stay as they are.
 
     A group's turn belongs to the controller with elapsed time or with lights that are not red; where neither

@@ -107,7 +107,7 @@ class Waiting(NamedTuple):
         )
 
 
-class Columns(NamedTuple):
+class BodyColumns(NamedTuple):
     """The bodies' columns that are read here, (N, 3); see ``triggers.owners_over``."""
 
     position_m: F64
@@ -123,7 +123,7 @@ class SignWatch:
         self._rules = rules
         self._waiting = Waiting.none(0)
 
-    def told(self, bodies: Columns, slots: I32, actor_ids: I32, now_s: float) -> U8:
+    def told(self, bodies: BodyColumns, slots: I32, actor_ids: I32, now_s: float) -> U8:
         """Return the colour (V,) that each of ``slots`` reads off the sign it is under; green where there is none.
 
         Args:
@@ -144,7 +144,7 @@ class SignWatch:
 
 @kernel
 def _colours(
-    rules: SignRules, waiting: Waiting, over: I32, bodies: Columns, slots: I32, actor_ids: I32, now_s: float
+    rules: SignRules, waiting: Waiting, over: I32, bodies: BodyColumns, slots: I32, actor_ids: I32, now_s: float
 ) -> U8:  # pragma: no cover - compiled
     colours = np.full(len(slots), _GREEN, np.uint8)
     for i in range(len(slots)):
@@ -164,7 +164,7 @@ def _colours(
 
 @kernel
 def _way_is_occupied(
-    rules: SignRules, sign: int, over: I32, bodies: Columns, slots: I32
+    rules: SignRules, sign: int, over: I32, bodies: BodyColumns, slots: I32
 ) -> bool:  # pragma: no cover - compiled
     """Whether a vehicle that is not itself under the sign touches one of its squares."""
     if rules.radius_m[sign] == 0.0:

@@ -12,7 +12,7 @@ from linden.structured import StructuredArray
 from linden.traffic import cycle
 from linden.traffic.cycle import restored
 from linden.traffic.signal_actors import NO_LIGHT, Signals
-from linden.traffic.signs import U8, Columns, SignWatch
+from linden.traffic.signs import U8, BodyColumns, SignWatch
 from linden.traffic.trigger_volumes import F64, I32, owners_over
 
 TIMED = (TrafficLightState.RED, TrafficLightState.YELLOW, TrafficLightState.GREEN)
@@ -33,7 +33,7 @@ class Traffic:
         self._signs = SignWatch(rules)
         self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
-        self._shown: cycle.LightState | None = None
+        self._shown: cycle.CycleState | None = None
         self._compile()
 
     def step(self, dt_s: float) -> None:
@@ -56,7 +56,7 @@ class Traffic:
 
         The columns are those of :meth:`over`; ``actor_ids`` (V,) are the actors in the slots, ``now_s`` is the time.
         """
-        bodies = Columns(position_m, rotation_rad, box_centre_m, half_extent_m)
+        bodies = BodyColumns(position_m, rotation_rad, box_centre_m, half_extent_m)
         return self._signs.told(bodies, slots, actor_ids, now_s)
 
     def _compile(self) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linden.blueprints.library import ANIMALS, BlueprintLibrary, Kind
+from linden.blueprints.library import ANIMALS, BlueprintKind, BlueprintLibrary
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.actors.actor_meshes import SCALED, actor_meshes
@@ -13,8 +13,8 @@ from linden.sensors.casting.caster import Instances, Rays
 from linden.sensors.casting.choose import caster_of
 
 LIBRARY = BlueprintLibrary.load()
-VISIBLE = [b for b in LIBRARY if b.kind in (Kind.VEHICLE, Kind.WALKER, Kind.PROP)]
-VEHICLES = [b for b in VISIBLE if b.kind is Kind.VEHICLE]
+VISIBLE = [b for b in LIBRARY if b.kind in (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP)]
+VEHICLES = [b for b in VISIBLE if b.kind is BlueprintKind.VEHICLE]
 PEOPLE = [b for b in VISIBLE if b.definition.id.startswith("walker.pedestrian.")]
 CARS = [b for b in VEHICLES if len(b.vehicle.wheel_offsets_m) == 4]
 EMPTY = join([])
@@ -33,11 +33,11 @@ def description(blueprint_id, **chosen):
 
 def frames_of(blueprint):
     """Where the parts are when the actor stands still."""
-    if blueprint.kind is Kind.VEHICLE:
+    if blueprint.kind is BlueprintKind.VEHICLE:
         hubs = np.zeros((1, 4, 3))
         hubs[0, : len(blueprint.vehicle.wheel_offsets_m)] = blueprint.vehicle.wheel_offsets_m
         return vehicle_frames(hubs, np.zeros((1, 4)), np.zeros((1, 4)))[0]
-    if blueprint.kind is Kind.WALKER and not blueprint.definition.id.startswith(ANIMALS):
+    if blueprint.kind is BlueprintKind.WALKER and not blueprint.definition.id.startswith(ANIMALS):
         return walker_frames(np.array([2.0 * blueprint.box.extent.z]), np.zeros(1), np.zeros(1))[0]
     return np.eye(4)[None, :3]
 

@@ -8,11 +8,11 @@ from linden.maps.records import ADVANCE, BLADE_LETTER_M, STREET_NAME_SIGN
 from linden.maps.standing import BLADE_HALF_HEIGHT_M, LONGEST_NAME, MOST_BLADES, blade_half_length_m
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh import things
-from linden.scenery.patches import Frames
+from linden.scenery.patches import PatchFrames
 from linden.scenery.roadside.name_signs import blades_with_names, capitals
 from linden.scenery.roadside.signal_posts import KNOWN_LETTERS, letters
 from linden.scenery.scene.mapped import mapped
-from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.objects import ObjectKind
 from opendrive_texts import street_through_junction
 
 POST = "".join(
@@ -63,7 +63,7 @@ def test_clients_see_a_pole_and_traffic_signs_with_the_names() -> None:
 def test_what_is_seen_lies_in_the_boxes() -> None:
     facts = derive(street_through_junction(objects=sign("0.000 Cleveland Ave", "0.5 E 17th Ave")))
     scene = mapped(facts.standing)
-    assert (scene.things["kind"] == Kind.STREET_NAME_SIGN).all()
+    assert (scene.things["kind"] == ObjectKind.STREET_NAME_SIGN).all()
     mesh = things(facts, scene)
     for row, box in enumerate(scene.boxes):
         corners = mesh.vertices_m[mesh.triangles[mesh.faces["object"] == row].ravel()] - box["centre"]
@@ -88,7 +88,7 @@ def test_names_of_other_alphabets_lose_what_cannot_be_drawn() -> None:
 
 
 def test_both_faces_of_a_blade_can_be_read_and_an_empty_name_draws_none() -> None:
-    frames = Frames(np.zeros((1, 3)), np.zeros(1))
+    frames = PatchFrames(np.zeros((1, 3)), np.zeros(1))
     half = np.array([[0.5, 0.006, 0.075]])
     plain = blades_with_names(frames, half, np.zeros(1, np.int32), ["北"])
     written = blades_with_names(frames, half, np.zeros(1, np.int32), ["L"])

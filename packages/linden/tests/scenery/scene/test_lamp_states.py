@@ -7,7 +7,7 @@ from linden.protocol.values.enums import LightGroup
 from linden.protocol.values.episode import WeatherParameters
 from linden.protocol.values.space import Vector3D
 from linden.scenery.scene.lamp_states import Lamps, is_night
-from linden.scenery.scene.objects import BOX, Kind, Scene, things_with
+from linden.scenery.scene.objects import BOX, ObjectKind, Scene, things_with
 
 NIGHT, DAY = WeatherParameters(sun_altitude_angle=-20.0), WeatherParameters(sun_altitude_angle=20.0)
 LEFT_TO_THE_MAP = WeatherParameters(*[-1.0] * 10)
@@ -15,7 +15,7 @@ LEFT_TO_THE_MAP = WeatherParameters(*[-1.0] * 10)
 
 @pytest.fixture
 def lamps() -> Lamps:
-    things = things_with(Kind.STREET_LAMP, np.array([[0.0, 0.0, 1.0], [9.0, 0.0, 2.0]]), np.zeros(2))
+    things = things_with(ObjectKind.STREET_LAMP, np.array([[0.0, 0.0, 1.0], [9.0, 0.0, 2.0]]), np.zeros(2))
     return Lamps(Scene(things, np.zeros(0, BOX)))
 
 

@@ -12,7 +12,7 @@ from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh import things
 from linden.scenery.scene.mapped import mapped, plain
 from linden.scenery.scene.neighbourhood import furnish
-from linden.scenery.scene.objects import Kind, join
+from linden.scenery.scene.objects import ObjectKind, join
 from linden.simulation.surroundings import scenery_of
 from opendrive_texts import street_through_junction
 
@@ -37,7 +37,11 @@ def facts() -> MapFacts:
 
 def test_things_have_their_kind_their_boxes_and_their_names() -> None:
     scene = mapped([HOUSE, SCHOOL, BENCH])
-    assert [Kind(kind) for kind in scene.things["kind"]] == [Kind.HOUSE, Kind.BUILDING, Kind.BENCH]
+    assert [ObjectKind(kind) for kind in scene.things["kind"]] == [
+        ObjectKind.HOUSE,
+        ObjectKind.BUILDING,
+        ObjectKind.BENCH,
+    ]
     assert scene.thing_names == ("House_0_CornerShop", "Building_0_WindsorSTEMAcademy", "Bench_0")
     assert scene.boxes["thing"].tolist() == [0, 1, 1, 2]
     assert scene.boxes["tag"].tolist() == [3, 3, 3, int(SemanticTag.STATIC)]
@@ -58,9 +62,9 @@ def test_a_map_without_buildings_is_furnished_as_ever(facts: MapFacts) -> None:
 
 def test_a_map_with_buildings_gets_no_drawn_houses_and_nothing_inside_of_them(facts: MapFacts) -> None:
     drawn = furnish(facts.lots, facts.ground)
-    tree = drawn.things["base"][np.flatnonzero(drawn.things["kind"] == Kind.TREE)[0]]
+    tree = drawn.things["base"][np.flatnonzero(drawn.things["kind"] == ObjectKind.TREE)[0]]
     scene = plain(replace(facts, standing=(building(tree[0], tree[1], (4.0, 4.0, 3.0)),)))
-    assert not (scene.things["kind"] == Kind.HOUSE).any()
+    assert not (scene.things["kind"] == ObjectKind.HOUSE).any()
     assert np.hypot(*(scene.things["base"][:, :2] - tree[:2]).T).min() > 4.0
     assert len(scene.things) > 0
 

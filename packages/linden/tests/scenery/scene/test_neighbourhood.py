@@ -10,7 +10,7 @@ from linden.maps.library import LoadedMap
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
 from linden.physics.contact.boxes import overlap
 from linden.scenery.scene.neighbourhood import SETBACK_M, VACANT, furnish
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 
 HIGH_M = 1e9
 
@@ -51,13 +51,13 @@ def test_nothing_that_stands_on_the_ground_stands_on_a_road_or_pavement(linden: 
 
 def test_an_arm_over_the_street_is_higher_than_any_vehicle(linden: LoadedMap, scene: Scene) -> None:
     hung = scene.boxes[is_hung(scene)]
-    assert len(hung) == (scene.things["kind"] == Kind.STREET_LAMP).sum()
+    assert len(hung) == (scene.things["kind"] == ObjectKind.STREET_LAMP).sum()
     ground_m, _ = linden.ground.surfaces_under(np.column_stack([hung["centre"][:, :2], np.full(len(hung), HIGH_M)]))
     assert (hung["centre"][:, 2] - hung["half"][:, 2] - ground_m > 5.0).all()
 
 
 def test_no_house_stands_in_another(scene: Scene) -> None:
-    houses = scene.boxes[scene.things["kind"][scene.boxes["thing"]] == Kind.HOUSE]
+    houses = scene.boxes[scene.things["kind"][scene.boxes["thing"]] == ObjectKind.HOUSE]
     columns = np.column_stack([
         houses["centre"][:, :2], np.cos(houses["yaw_rad"]), np.sin(houses["yaw_rad"]), houses["half"][:, :2],
         houses["centre"][:, 2] - houses["half"][:, 2], houses["centre"][:, 2] + houses["half"][:, 2],
@@ -75,13 +75,13 @@ def test_no_house_stands_in_another(scene: Scene) -> None:
 
 
 def test_as_many_lots_are_built_on_as_the_neighbourhood_has(linden: LoadedMap, scene: Scene) -> None:
-    houses = (scene.things["kind"] == Kind.HOUSE).sum()
+    houses = (scene.things["kind"] == ObjectKind.HOUSE).sum()
     assert len(linden.lots) > 3000
     assert houses / len(linden.lots) == pytest.approx(1.0 - VACANT, abs=0.03)
 
 
 def test_a_house_stands_back_from_the_pavement_within_its_lot(linden: LoadedMap, scene: Scene) -> None:
-    houses = scene.boxes[scene.things["kind"][scene.boxes["thing"]] == Kind.HOUSE]
+    houses = scene.boxes[scene.things["kind"][scene.boxes["thing"]] == ObjectKind.HOUSE]
     lots = linden.lots
     for house in houses[::40]:
         lot = lots[np.argmin(np.hypot(*(lots["front_m"] - house["centre"][:2]).T))]

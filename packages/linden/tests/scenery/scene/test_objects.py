@@ -8,7 +8,7 @@ import pytest
 from linden.maps.ground import Ground
 from linden.protocol.values.enums import MapLayer, SemanticTag
 from linden.protocol.values.space import Rotation, Transform, Vector3D
-from linden.scenery.scene.objects import Kind, Scene, boxes_on, join, object_id, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, boxes_on, join, object_id, things_with
 from linden.scenery.scene.posts import Post, posts
 
 
@@ -36,7 +36,7 @@ def test_a_box_is_found_by_its_id_and_no_two_share_one(scene: Scene) -> None:
 
 
 def test_a_box_stands_where_its_thing_is_turned_to(scene: Scene) -> None:
-    things = things_with(Kind.HOUSE, np.array([[5.0, 5.0, 0.0]]), np.array([math.pi / 2]))
+    things = things_with(ObjectKind.HOUSE, np.array([[5.0, 5.0, 0.0]]), np.array([math.pi / 2]))
     (box,) = boxes_on(things, np.array([2.0, 0.0, 1.0]), np.ones(3), SemanticTag.BUILDINGS)
     np.testing.assert_allclose(box["centre"], [5.0, 7.0, 1.0])
     plate = scene.objects[5]

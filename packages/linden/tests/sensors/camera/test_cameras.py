@@ -11,7 +11,7 @@ from linden.protocol.values.episode import CLEAR_NOON
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.scenery.mesh import LampOf
 from linden.sensors.camera.cameras import CAMERAS, Image
-from linden.sensors.view import Look, Seen
+from linden.sensors.view import Seen, SensorLook
 
 EYE = Transform(Vector3D(0.0, 0.0, 2.0), Rotation())
 WIDTH, HEIGHT = 160, 122  # no multiple of a tile's 4
@@ -27,8 +27,8 @@ def camera(kind: str, **attributes: str):
     return CAMERAS[name](LIBRARY.validate(ActorDescription(0, name, values)))
 
 
-def look(seen: Seen, pose: Transform = EYE, before: Transform | None = None, number: int = 0) -> Look:
-    return Look(seen, {}, pose, before or pose, np.zeros(3), 0, number, 0.05)
+def look(seen: Seen, pose: Transform = EYE, before: Transform | None = None, number: int = 0) -> SensorLook:
+    return SensorLook(seen, {}, pose, before or pose, np.zeros(3), 0, number, 0.05)
 
 
 def pixels(kind: str, seen: Seen, pose: Transform = EYE, before: Transform | None = None, **attributes: str):

@@ -28,7 +28,7 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.agents.builtin.driving.driver import Command
+    from basu.agents.builtin.driving.driver import DrivingCommand
     from basu.agents.builtin.perception import VehicleFacts
     from basu.routing import Route
 
@@ -93,7 +93,7 @@ class BasicAgent(AutonomousAgent):
         return Driver(task, facts.body, facts.model, self.time_step_s), facts
 
 
-def _control(command: Command, facts: VehicleFacts, speed_mps: float) -> carla.VehicleControl:
+def _control(command: DrivingCommand, facts: VehicleFacts, speed_mps: float) -> carla.VehicleControl:
     """The decision in CARLA's terms."""
     return carla.VehicleControl(
         throttle=command.throttle,

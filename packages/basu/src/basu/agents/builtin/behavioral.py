@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.agents.builtin.driving.manner import Manner
-    from basu.agents.builtin.driving.path import Path
+    from basu.agents.builtin.driving.path import SampledPath
     from basu.agents.builtin.perception import VehicleFacts
-    from basu.agents.builtin.scene import Ego
+    from basu.agents.builtin.scene import DrivenVehicle
     from basu.routing import Route
 
 
@@ -102,7 +102,7 @@ TIGHTEST_MPS2 = 6.0  # sideways, when the wheel is turned at speed
 AIM_M = 8.0  # from farther away one aims this far ahead
 
 
-class Thing(NamedTuple):
+class StreetBox(NamedTuple):
     """An upright box beside the street; CARLA frame, m and rad."""
 
     x_m: float
@@ -117,10 +117,10 @@ class Deviation(NamedTuple):
 
     leaves_s_m: float
     hits_s_m: float
-    thing: Thing
+    thing: StreetBox
 
 
-def choose(path: Path, things: Sequence[Thing], at_s_m: float) -> Deviation | None:
+def choose(path: SampledPath, things: Sequence[StreetBox], at_s_m: float) -> Deviation | None:
     """The thing nearest to beside ``at_s_m`` that can be driven at with nothing between; None where there is none."""
     middle = path.index_at(at_s_m)
     near = [t for t in things if math.hypot(t.x_m - path.x_m[middle], t.y_m - path.y_m[middle]) < AROUND_M]
@@ -138,7 +138,7 @@ def choose(path: Path, things: Sequence[Thing], at_s_m: float) -> Deviation | No
     return None
 
 
-def _is_clear(path: Path, from_s_m: float, thing: Thing, others: Sequence[Thing]) -> bool:
+def _is_clear(path: SampledPath, from_s_m: float, thing: StreetBox, others: Sequence[StreetBox]) -> bool:
     """Whether nothing else stands on the way from a place on the path to the thing's nearer side."""
     start = path.index_at(from_s_m)
     x_m, y_m = path.x_m[start], path.y_m[start]
@@ -148,7 +148,7 @@ def _is_clear(path: Path, from_s_m: float, thing: Thing, others: Sequence[Thing]
     return not any(_reaches(other, way_m) for other in others)
 
 
-def _reaches(thing: Thing, points_m: NDArray[np.float64]) -> bool:
+def _reaches(thing: StreetBox, points_m: NDArray[np.float64]) -> bool:
     """Whether a box, grown by ``CLEAR_M``, holds one of the points (N, 2)."""
     gaps_m = points_m - (thing.x_m, thing.y_m)
     cos, sin = math.cos(thing.yaw_rad), math.sin(thing.yaw_rad)
@@ -157,7 +157,7 @@ def _reaches(thing: Thing, points_m: NDArray[np.float64]) -> bool:
     return bool(((along_m < thing.half_length_m + CLEAR_M) & (across_m < thing.half_width_m + CLEAR_M)).any())
 
 
-def aim_rad(ego: Ego, thing: Thing, wheelbase_m: float) -> float:
+def aim_rad(ego: DrivenVehicle, thing: StreetBox, wheelbase_m: float) -> float:
     """The front wheels' angle with which to drive at the thing, positive to the right.
 
     Pure pursuit (Coulter 1992, "Implementation of the pure pursuit path tracking algorithm"), no tighter than tyres
@@ -170,7 +170,7 @@ def aim_rad(ego: Ego, thing: Thing, wheelbase_m: float) -> float:
     return math.atan(wheelbase_m * max(-tightest_1pm, min(tightest_1pm, bend_1pm)))
 
 
-class Phase(enum.Enum):
+class IntentionPhase(enum.Enum):
     """How far it has come with its bad intentions."""
 
     DRIVING = "driving"
@@ -182,13 +182,13 @@ class Phase(enum.Enum):
 class DeviatingAgent(BehavioralAgent):
     """Drives well at first."""
 
-    phase = Phase.DRIVING
+    phase = IntentionPhase.DRIVING
     deviation: Deviation | None = None
     _before_mps = 0.0
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
         """Drive as the behavioral agent does, and then not any more."""
-        if self.phase is Phase.STAYING:
+        if self.phase is IntentionPhase.STAYING:
             return carla.VehicleControl(brake=1.0, hand_brake=True)
         control = super().run_step(sensor_data)
         snapshot = self.world.get_snapshot()
@@ -201,14 +201,14 @@ class DeviatingAgent(BehavioralAgent):
         return self._spoilt(control, ego, self.driver, self.facts)
 
     def _spoilt(
-        self, control: carla.VehicleControl, ego: Ego, driver: BehavioralDriver, facts: VehicleFacts
+        self, control: carla.VehicleControl, ego: DrivenVehicle, driver: BehavioralDriver, facts: VehicleFacts
     ) -> carla.VehicleControl:
         """What becomes of a good driver's control."""
-        if self.phase is Phase.STAYING:
+        if self.phase is IntentionPhase.STAYING:
             return carla.VehicleControl(brake=1.0, hand_brake=True)
-        if self.phase is not Phase.DRIVING:
+        if self.phase is not IntentionPhase.DRIVING:
             control.throttle, control.brake = self._pedals(ego, driver)
-        if self.phase is Phase.LEAVING and self.deviation is not None:
+        if self.phase is IntentionPhase.LEAVING and self.deviation is not None:
             angle_rad = aim_rad(ego, self.deviation.thing, facts.body.wheelbase_m)
             control.steer = facts.steering.command(angle_rad, ego.speed_mps)
         return control
@@ -234,25 +234,25 @@ class DeviatingAgent(BehavioralAgent):
             )
         return driver, facts
 
-    def _advance(self, ego: Ego, driver: BehavioralDriver) -> None:
+    def _advance(self, ego: DrivenVehicle, driver: BehavioralDriver) -> None:
         """From one phase to the next."""
         assert self.deviation is not None
         assert driver.place is not None
         s_m = driver.place.s_m
-        if self.phase is Phase.DRIVING and s_m >= self.deviation.leaves_s_m - RUN_UP_M:
-            self.phase = Phase.SPEEDING
-        elif self.phase is Phase.SPEEDING and s_m >= self.deviation.leaves_s_m:
-            self.phase = Phase.LEAVING
-        elif self.phase is Phase.LEAVING and self._before_mps - ego.speed_mps > BLOW_MPS:
-            self.phase = Phase.STAYING
+        if self.phase is IntentionPhase.DRIVING and s_m >= self.deviation.leaves_s_m - RUN_UP_M:
+            self.phase = IntentionPhase.SPEEDING
+        elif self.phase is IntentionPhase.SPEEDING and s_m >= self.deviation.leaves_s_m:
+            self.phase = IntentionPhase.LEAVING
+        elif self.phase is IntentionPhase.LEAVING and self._before_mps - ego.speed_mps > BLOW_MPS:
+            self.phase = IntentionPhase.STAYING
 
-    def _pedals(self, ego: Ego, driver: BehavioralDriver) -> tuple[float, float]:
+    def _pedals(self, ego: DrivenVehicle, driver: BehavioralDriver) -> tuple[float, float]:
         """Throttle and brake for a speed beyond the limit."""
         assert driver.place is not None
         wanted_mps = driver.posted_mps + ABOVE_LIMIT_MPS
         return min(1.0, max(0.0, 0.4 + 0.5 * (wanted_mps - ego.speed_mps))), 0.0
 
-    def _things(self) -> list[Thing]:
+    def _things(self) -> list[StreetBox]:
         """Everything hard that a bumper may hit, as far as the simulator tells."""
         assert self.route is not None
         road_z_m = float(self.route.points_m[np.searchsorted(self.route.s_m, SHARE * self.route.length_m), 2])
@@ -261,5 +261,5 @@ class DeviatingAgent(BehavioralAgent):
             for box in self.world.get_level_bbs(getattr(carla.CityObjectLabel, name)):
                 at, half = box.location, box.extent
                 if at.z - half.z < road_z_m + LOWEST_M and at.z + half.z > road_z_m + HIGHEST_M:
-                    found.append(Thing(at.x, at.y, math.radians(box.rotation.yaw), half.x, half.y))
+                    found.append(StreetBox(at.x, at.y, math.radians(box.rotation.yaw), half.x, half.y))
         return found

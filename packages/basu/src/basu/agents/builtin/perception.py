@@ -9,7 +9,7 @@ import numpy as np
 
 from basu.agents.builtin.driving.controllers import DriveModel
 from basu.agents.builtin.rules.stopping_lines import Light
-from basu.agents.builtin.scene import Body, Ego
+from basu.agents.builtin.scene import DrivenVehicle, VehicleGeometry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     import carla
 
 
-def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot, gear: int) -> Ego:
+def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot, gear: int) -> DrivenVehicle:
     """The driven vehicle of a snapshot, which does not tell its gear."""
     pose, velocity = own.get_transform(), own.get_velocity()
     yaw_rad = math.radians(pose.rotation.yaw)
     speed_mps = velocity.x * math.cos(yaw_rad) + velocity.y * math.sin(yaw_rad)
-    return Ego(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps, gear)
+    return DrivenVehicle(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps, gear)
 
 
 class Lights:
@@ -66,7 +66,7 @@ class Steering(NamedTuple):
 class VehicleFacts(NamedTuple):
     """All that is known of a vehicle."""
 
-    body: Body
+    body: VehicleGeometry
     model: DriveModel
     steering: Steering
     top_mps: float
@@ -80,7 +80,7 @@ def read_facts(vehicle: carla.Vehicle, pose: carla.Transform) -> VehicleFacts:
     curve = [(float(p.x), float(p.y)) for p in control.steering_curve]
     full_deg = max((float(wheel.max_steer_angle) for wheel in control.wheels), default=70.0)
     return VehicleFacts(
-        Body(
+        VehicleGeometry(
             wheelbase_m=front_x_m - rear_x_m,
             rear_axle_m=max(-rear_x_m, 0.3),
             front_m=float(box.location.x + box.extent.x),

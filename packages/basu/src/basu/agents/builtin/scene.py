@@ -1,4 +1,4 @@
-"""Data types of the driving agents: the vehicle's `Body` and state `Ego`, `Other` actors, and speed `Restriction`.
+"""Data types of the driving agents: `VehicleGeometry`, `DrivenVehicle`, `Other` actors, and speed `Restriction`.
 
 World frame throughout: CARLA's (metres, x east, y south, angles in rad clockwise from above).
 """
@@ -8,12 +8,12 @@ from __future__ import annotations
 import enum
 from typing import NamedTuple
 
-from basu.agents.sight.actors import Kind, Other
+from basu.agents.sight.actors import ActorKind, Other
 
-__all__ = ["Body", "Ego", "Kind", "Other", "Restriction", "Urgency"]
+__all__ = ["ActorKind", "DrivenVehicle", "Other", "Restriction", "Urgency", "VehicleGeometry"]
 
 
-class Body(NamedTuple):
+class VehicleGeometry(NamedTuple):
     """What does not change about the driven vehicle; lengths in its own frame, from the actor's origin."""
 
     wheelbase_m: float
@@ -23,7 +23,7 @@ class Body(NamedTuple):
     half_width_m: float
 
 
-class Ego(NamedTuple):
+class DrivenVehicle(NamedTuple):
     """The driven vehicle now."""
 
     time_s: float

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.agents.process.channel import POLL_S, BenchmarksEnd, ChannelClosedError
 from basu.agents.process.endings import Ending, ended_how, ended_outside, oom_kills
-from basu.agents.process.keeper import END_LIMIT_S, Limits
+from basu.agents.process.keeper import END_LIMIT_S, ProcessLimits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,7 +68,7 @@ class Memory(NamedTuple):
         return f"it used {used_gb:.2f} GB of memory, more than its limit of {self.limit_gb:g} GB"
 
 
-class Bounds(NamedTuple):
+class ProcessBounds(NamedTuple):
     """The bounds that a drive sets to a process."""
 
     memory: Memory | None = None
@@ -80,7 +80,7 @@ class Bounds(NamedTuple):
 class AgentProcess:
     """One process with its keeper (`basu.agents.process.keeper`), in a session of its own: Ctrl-C does not reach it."""
 
-    def __init__(self, bounds: Bounds) -> None:
+    def __init__(self, bounds: ProcessBounds) -> None:
         """Start the process; no call is sent yet. Hidden folders that are not there yet are made."""
         ours, theirs = socket.socketpair()
         self._control, kept = socket.socketpair()
@@ -90,7 +90,7 @@ class AgentProcess:
         for made in self._made_folders:
             made.mkdir(parents=True, exist_ok=True)
         may_write = [str(self._folder), *bounds.writable, *ALSO_WRITABLE]
-        limits = Limits(may_write, list(bounds.closed_ports), list(bounds.hidden))
+        limits = ProcessLimits(may_write, list(bounds.closed_ports), list(bounds.hidden))
         arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), json.dumps(limits)]
         with theirs, kept:
             self._process = subprocess.Popen(  # noqa: S603 - our own command

@@ -54,7 +54,7 @@ class Wanted(NamedTuple):
     step_limit_s: float
 
 
-class Place(NamedTuple):
+class DriveBinding(NamedTuple):
     """Where the agent drives: everything that ``bind`` needs and that can be sent."""
 
     address: tuple[str, int]
@@ -128,7 +128,7 @@ class Child:
         specs = self._agent.sensor_set()
         return None if specs is None else [asdict(spec) for spec in specs]
 
-    def setup(self, place: Place) -> bool:
+    def setup(self, place: DriveBinding) -> bool:
         """Bind the agent to its run and let it get ready; whether it says that a person drives."""
         client = self._connected(place)
         world = self._arrived(client, place)
@@ -200,7 +200,7 @@ class Child:
         random.seed(seed)
         np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
 
-    def _connected(self, place: Place) -> carla.Client:
+    def _connected(self, place: DriveBinding) -> carla.Client:
         """A new client, for each run: one that another client's reload found connected keeps the actors of before."""
         if self._address != place.address:
             self._address = place.address
@@ -210,7 +210,7 @@ class Child:
         client.set_timeout(place.timeout_s)
         return client
 
-    def _arrived(self, client: carla.Client, place: Place) -> carla.World:
+    def _arrived(self, client: carla.Client, place: DriveBinding) -> carla.World:
         """The world, once this client has seen what the benchmark's has seen: an episode may have begun anew."""
         self._wait_for(client.get_world(), place.frame, place.timeout_s)
         return client.get_world()

@@ -43,7 +43,7 @@ LEFT_OUT = (
 )
 
 
-class Limits(NamedTuple):
+class ProcessLimits(NamedTuple):
     """What the agent's process may do beside its usual rights, and what it may not."""
 
     writable: list[str]  # folders
@@ -61,7 +61,7 @@ class Ended(NamedTuple):
 def main() -> None:
     """Keep an agent's process: arguments are the descriptors of channel and control, and the limits."""
     channel, control = int(sys.argv[2]), int(sys.argv[3])
-    limits = Limits(*json.loads(sys.argv[4]))
+    limits = ProcessLimits(*json.loads(sys.argv[4]))
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     os.set_inheritable(channel, False)
     _set(PR_SET_CHILD_SUBREAPER, 1)
@@ -96,7 +96,7 @@ def main() -> None:
     _become_agent(channel, [write for _, write in outputs], limits, held)
 
 
-def _become_agent(channel: int, outputs: list[int], limits: Limits, held: list[str]) -> None:
+def _become_agent(channel: int, outputs: list[int], limits: ProcessLimits, held: list[str]) -> None:
     """Go on as the agent's process, confined."""
     os.setsid()
     for descriptor, own in zip(outputs, (1, 2), strict=True):
@@ -112,7 +112,7 @@ def _become_agent(channel: int, outputs: list[int], limits: Limits, held: list[s
     serve(channel, held)
 
 
-class _Memory:
+class _PeakMemory:
     """The most memory that an agent held: the peak of one process, or the sum of the processes that SIGKILL ended.
 
     Processes that live at the end are ended so, and a process that the kernel ends for want of memory.
@@ -139,7 +139,7 @@ class _Memory:
 def _be_first(agent: int, ended: int) -> NoReturn:
     """Reap every process of the namespace until the agent's has ended; the rest ends with this process."""
     signal.signal(signal.SIGTERM, lambda *_: os.kill(agent, signal.SIGTERM))
-    end, memory = None, _Memory()
+    end, memory = None, _PeakMemory()
     while end is None:
         pid, status, usage = os.wait4(-1, 0)
         memory.add(status, usage.ru_maxrss)
@@ -277,7 +277,7 @@ def _end_all(child: int, end: Ended | None) -> Ended | None:
 
     The orphans of a killed process become children of the keeper. ``end`` is the child's, if it has ended.
     """
-    memory = _Memory()
+    memory = _PeakMemory()
     if end is not None:
         memory.add(end.status, end.peak_kb)
     deadline_s = time.monotonic() + END_LIMIT_S

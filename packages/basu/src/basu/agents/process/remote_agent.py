@@ -14,8 +14,8 @@ import carla
 from basu.agents.autonomous_agent import AgentConfig, parse_config
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
 from basu.agents.loader import LOAD_LIMIT_S, LoadedAgent, is_name, load_agent
-from basu.agents.process.agent_process import AgentProcess, Bounds, CallError, Death, Memory, OverLimitError
-from basu.agents.process.child import Place, Wanted
+from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError, ProcessBounds
+from basu.agents.process.child import DriveBinding, Wanted
 from basu.agents.sensor_file import SensorSpec
 from basu.errors import (
     AgentCrashedError,
@@ -55,7 +55,7 @@ class AgentInProcess(NamedTuple):
     is_human: bool
     wanted: str  # as it was typed
     agent_config: str | None
-    bounds: Bounds = Bounds()
+    bounds: ProcessBounds = ProcessBounds()
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
@@ -71,10 +71,10 @@ class AgentInProcess(NamedTuple):
         return list(_enforced.get(self.bounds, ()))
 
 
-_enforced: dict[Bounds, tuple[str, ...]] = {}  # the same for all agents of a machine
+_enforced: dict[ProcessBounds, tuple[str, ...]] = {}  # the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
-_kept: dict[tuple[str, Bounds], AgentProcess] = {}
+_kept: dict[tuple[str, ProcessBounds], AgentProcess] = {}
 
 
 def find_agent(
@@ -105,7 +105,9 @@ def find_agent(
     file = None if is_name(wanted.partition(":")[0]) else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
     needed = [*writes, *(str(each) for each in (file, agent_config) if each is not None)]
     hidden = () if output is None or _holds(output, needed) else (str(output.resolve()),)
-    agent = AgentInProcess("", file, "", False, wanted, agent_config, Bounds(memory, writes, closed_ports, hidden))
+    agent = AgentInProcess(
+        "", file, "", False, wanted, agent_config, ProcessBounds(memory, writes, closed_ports, hidden)
+    )
     try:
         process = agent.process()
         found = process.call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
@@ -178,7 +180,7 @@ class RemoteAgent:
     def setup(self, binding: Mapping[str, Any], timeout_s: float) -> None:
         """Bind the agent to its run with the arguments of ``AutonomousAgent.bind``, and let it get ready."""
         route: Route | None = binding["route"]
-        place = Place(
+        place = DriveBinding(
             address=binding["server_address"],
             timeout_s=timeout_s,
             frame=binding["world"].get_snapshot().frame,

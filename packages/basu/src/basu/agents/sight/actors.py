@@ -22,7 +22,7 @@ SMALLEST_M = 0.15  # half size of a body with an empty box from the server
 USUAL_HALF_HEIGHT_M = 0.75  # a car's, where no height is given
 
 
-class Kind(enum.Enum):
+class ActorKind(enum.Enum):
     """What another actor is; a prop may be anything that lies or stands about."""
 
     VEHICLE = "vehicle"
@@ -31,10 +31,10 @@ class Kind(enum.Enum):
 
 
 KIND_OF_PREFIX = {
-    "vehicle.": Kind.VEHICLE,
-    "walker.pedestrian.": Kind.WALKER,
-    ANIMALS: Kind.WALKER,
-    "static.prop.": Kind.PROP,
+    "vehicle.": ActorKind.VEHICLE,
+    "walker.pedestrian.": ActorKind.WALKER,
+    ANIMALS: ActorKind.WALKER,
+    "static.prop.": ActorKind.PROP,
 }
 
 
@@ -54,7 +54,7 @@ class Other(NamedTuple):
     """
 
     id: int
-    kind: Kind
+    kind: ActorKind
     x_m: float
     y_m: float
     yaw_rad: float
@@ -76,7 +76,7 @@ class Other(NamedTuple):
 class _Shape(NamedTuple):
     """What stays the same about another actor."""
 
-    kind: Kind
+    kind: ActorKind
     partner: Partner
     half_length_m: float
     half_width_m: float
@@ -110,7 +110,7 @@ class Census:
             pose = actor.get_transform()
             at = pose.location
             if abs(at.x - x_m) < radius_m and abs(at.y - y_m) < radius_m:
-                is_vehicle = shape.kind is Kind.VEHICLE
+                is_vehicle = shape.kind is ActorKind.VEHICLE
                 motion = self._motion.of(actor, pose, t_s) if is_vehicle else own_motion(actor)
                 found.append(_other(actor_id, pose, shape, motion))
         return found

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.agents.sight.actors import Census, Kind, Other
+from basu.agents.sight.actors import ActorKind, Census, Other
 from basu.agents.sight.occlusion import hidden, make_boxes, static_boxes
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class Sight:
         bodies = make_boxes(rows)
         away_m = np.hypot(rows[:, 0] - sensor_m[0], rows[:, 1] - sensor_m[1])
         unlit_m, lamps_m = self._ranges_m
-        reach_m = np.array([lamps_m if o.kind is Kind.VEHICLE else unlit_m for o in found]) + bodies.radius_m
+        reach_m = np.array([lamps_m if o.kind is ActorKind.VEHICLE else unlit_m for o in found]) + bodies.radius_m
         due = np.array([self._is_due(o.id, far) for o, far in zip(found, (away_m > RADIUS_M).tolist(), strict=True)])
         looked_at = np.flatnonzero(due & (away_m <= reach_m))
         visible = np.array([self._saw.get(o.id, False) for o in found]) & ~due

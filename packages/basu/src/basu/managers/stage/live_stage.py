@@ -12,8 +12,8 @@ import carla
 from basu.errors import ScenarioError
 from basu.managers.stage.environment import Surroundings
 from basu.managers.stage.scenario_actors import ActorCommands, destroy_actors, member_of, spawn_actors
-from basu.scenarios.criteria.criterion import Move, Thing
-from basu.scenarios.stage import EGO, Body
+from basu.scenarios.criteria.criterion import Move, StandingThing
+from basu.scenarios.stage import EGO, ActorBox
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -47,7 +47,7 @@ class LiveStage:
         self._commands = ActorCommands(run.client)
         self._surroundings = Surroundings(run.client, run.world, shared, case)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
-        self._bodies: dict[str, Body] = {}
+        self._bodies: dict[str, ActorBox] = {}
         self._frame: Frame | None = None
         self._began_tick = 0
         self._moves: list[Move] = []
@@ -122,11 +122,11 @@ class LiveStage:
             controls = change(controls)
         return controls
 
-    def things(self) -> tuple[Thing, ...]:
+    def things(self) -> tuple[StandingThing, ...]:
         """Those of the cast that are neither vehicle nor walker."""
         bodies = [(name, self.body(name)) for name, member in self._cast.items() if member.kind == "static"]
         return tuple(
-            Thing(name, body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m)
+            StandingThing(name, body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m)
             for name, body in bodies
         )
 
@@ -143,7 +143,7 @@ class LiveStage:
         return (self._now.tick - self._began_tick) * self.step_s
 
     @property
-    def ego(self) -> Body:
+    def ego(self) -> ActorBox:
         """The vehicle under test."""
         return self.body(EGO)
 
@@ -157,7 +157,7 @@ class LiveStage:
         """The actors that the ego has touched since the scenario began."""
         return self._touched
 
-    def body(self, name: str) -> Body:
+    def body(self, name: str) -> ActorBox:
         """An actor of the cast in this frame."""
         if name not in self._bodies:
             self._bodies[name] = self._seen(self._member(name))
@@ -247,14 +247,14 @@ class LiveStage:
             raise ScenarioError(f"{self._case} leads '{name}' as a {kind}; it is a {member.actor.type_id}")
         return member
 
-    def _seen(self, member: Member) -> Body:
+    def _seen(self, member: Member) -> ActorBox:
         """A member in this frame; before the first, where it was put."""
         seen: Any = self._now.snapshot.find(member.actor.id)
         source = member.actor if seen is None else seen
         with contextlib.suppress(RuntimeError):
             pose, velocity = source.get_transform(), source.get_velocity()
             yaw_rad = math.radians(pose.rotation.yaw)
-            return Body(
+            return ActorBox(
                 pose.location.x + member.box_x_m * math.cos(yaw_rad),
                 pose.location.y + member.box_x_m * math.sin(yaw_rad),
                 pose.location.z,

@@ -28,7 +28,7 @@ GIVEN_S, GIVEN_SPM = 5.0, 0.8  # 1.0: time for a route of no length, and for eac
 LEAST_S, SLOWEST_SHARE = 300.0, 0.1  # 2.x: time for a route of no length, and of the limit for each metre made
 
 
-class Ending(NamedTuple):
+class LeaderboardEnding(NamedTuple):
     """The end of a drive in the leaderboard's eyes."""
 
     tick: int  # the last that counts
@@ -53,7 +53,7 @@ def made_m(history: History) -> NDArray[np.float64]:
     return np.diff(passed_m(history), prepend=0.0)
 
 
-def ending(history: History, version: Version) -> Ending:
+def ending(history: History, version: Version) -> LeaderboardEnding:
     """The first frame in which one of its criteria ends the drive, or the last one there is."""
     last = len(history.frames) - 1
     first: list[tuple[int, Kind | None]] = [
@@ -67,9 +67,9 @@ def ending(history: History, version: Version) -> Ending:
         if tick is not None
     ]
     if not first:
-        return Ending(last, arrived=False, by=None)
+        return LeaderboardEnding(last, arrived=False, by=None)
     tick, by = min(first, key=lambda end: end[0])
-    return Ending(tick, arrived=by is None, by=by)
+    return LeaderboardEnding(tick, arrived=by is None, by=by)
 
 
 def _first(holds: NDArray[np.bool_]) -> int | None:

@@ -31,7 +31,7 @@ import numpy as np
 
 from basu.metrics.lanes import DRIVING
 from basu.metrics.leaderboard.ending import made_m, passed_m
-from basu.metrics.leaderboard.rules import Event, Kind, Version
+from basu.metrics.leaderboard.rules import Kind, LeaderboardEvent, Version
 from basu.metrics.stretches import total_m
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ RADIUS_M, AT_REST_MPS = 5.0, 0.1  # 2.x: COLLISION_RADIUS, EPSILON
 
 
 @dataclass(slots=True)
-class _Memory:
+class _CollisionMemory:
     """What a version still knows of earlier collisions."""
 
     places: list[Place] = field(default_factory=list)
@@ -60,11 +60,11 @@ class _Memory:
             self.party = None
 
 
-def collisions(history: History, version: Version) -> tuple[Event, ...]:
+def collisions(history: History, version: Version) -> tuple[LeaderboardEvent, ...]:
     """The collisions that ``version`` counts."""
     frames, speed_mps = history.frames, history.speed_mps()
     near_m = SAME_PLACE_M if version is Version.V1_0 else RADIUS_M
-    memory = _Memory()
+    memory = _CollisionMemory()
     found = []
     messages: dict[int, list[Collision]] = defaultdict(list)
     for event in history.collisions:
@@ -85,7 +85,7 @@ def collisions(history: History, version: Version) -> tuple[Event, ...]:
             if event.other_id != 0:
                 memory.party = event.other_id
             if kind is not None:
-                found.append(Event(kind=kind, tick=tick))
+                found.append(LeaderboardEvent(kind=kind, tick=tick))
         memory.forget(here, t_s)
     return tuple(found)
 
@@ -105,7 +105,7 @@ ACROSS_RAD = np.radians(120.0)  # between the vehicle and the lane that it leave
 OPPOSITE_RAD = np.radians(150.0)  # between one lane and the next
 
 
-def outside_lanes(history: History, version: Version) -> tuple[Event, ...]:
+def outside_lanes(history: History, version: Version) -> tuple[LeaderboardEvent, ...]:
     """One event with the percentage, or none."""
     frames = history.frames
     outside = (frames["off_lane_m"] > ALLOWED_M[version]) | in_wrong_lane(history, version)
@@ -114,7 +114,7 @@ def outside_lanes(history: History, version: Version) -> tuple[Event, ...]:
     if len(wrong) == 0:
         return ()
     percentage = 100.0 * total_m(along_m[wrong]) / total_m(along_m)
-    return (Event(kind=Kind.OUTSIDE_LANES, tick=int(wrong[-1]), percentage=percentage),)
+    return (LeaderboardEvent(kind=Kind.OUTSIDE_LANES, tick=int(wrong[-1]), percentage=percentage),)
 
 
 def in_wrong_lane(history: History, version: Version) -> NDArray[np.bool_]:
@@ -153,7 +153,7 @@ LAST_AT = 0.95  # of the route: a drive that ends beyond it has its last quarter
 MOVED_MPS = 0.1
 
 
-def too_slow(history: History) -> tuple[Event, ...]:
+def too_slow(history: History) -> tuple[LeaderboardEvent, ...]:
     """One event for each quarter of the route on which the vehicle was slower than the traffic."""
     route, frames = history.facts.route, history.frames
     farthest_m = passed_m(history)
@@ -174,14 +174,14 @@ def too_slow(history: History) -> tuple[Event, ...]:
     return tuple(event for event in found if event is not None)
 
 
-def _judged(traffic_mps: NDArray[np.float64], speed_mps: NDArray[np.float64], tick: int) -> Event | None:
+def _judged(traffic_mps: NDArray[np.float64], speed_mps: NDArray[np.float64], tick: int) -> LeaderboardEvent | None:
     """What comes of one stretch; frames without traffic do not count."""
     with_traffic = np.isfinite(traffic_mps)
     mean_mps = float(traffic_mps[with_traffic].mean()) if with_traffic.any() else 0.0
     if mean_mps == 0.0:
         return None
     percentage = round(float(speed_mps[with_traffic].mean()) / mean_mps * 100.0, 2)
-    return Event(kind=Kind.MIN_SPEED, tick=tick, percentage=percentage) if percentage < 100.0 else None
+    return LeaderboardEvent(kind=Kind.MIN_SPEED, tick=tick, percentage=percentage) if percentage < 100.0 else None
 
 
 def _traffic_mps(history: History) -> NDArray[np.float64]:

@@ -43,7 +43,7 @@ class Kind(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Event:
+class LeaderboardEvent:
     """One thing that the leaderboard would have written down."""
 
     kind: Kind
@@ -74,7 +74,7 @@ POINTS: Mapping[Kind, float] = {
 SCENARIOS_ONLY = (Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY)  # no such event without the leaderboard's scenarios
 
 
-def penalty(version: Version, events: Iterable[Event]) -> float:
+def penalty(version: Version, events: Iterable[LeaderboardEvent]) -> float:
     """The infraction penalty, 1 for a drive without events; events that end a drive cost nothing here."""
     events = tuple(events)
     outside = math.prod(1.0 - (e.percentage or 0.0) / 100.0 for e in events if e.kind is Kind.OUTSIDE_LANES)
@@ -88,6 +88,6 @@ def penalty(version: Version, events: Iterable[Event]) -> float:
     return outside * factors * slow
 
 
-def _slow_share(event: Event) -> float:
+def _slow_share(event: LeaderboardEvent) -> float:
     """How much of its penalty an event takes: all, but for being slow, where it is what is missing to 100 %."""
     return 1.0 if event.kind is not Kind.MIN_SPEED else 1.0 - (event.percentage or 0.0) / 100.0

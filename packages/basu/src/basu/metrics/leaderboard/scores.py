@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.json_schema import integer, listing, mapping, number, record, text
-from basu.metrics.leaderboard.ending import Ending, completion_percent, ending
+from basu.metrics.leaderboard.ending import LeaderboardEnding, completion_percent, ending
 from basu.metrics.leaderboard.infractions import collisions, outside_lanes, too_slow
-from basu.metrics.leaderboard.rules import SCENARIOS_ONLY, Event, Kind, Version, penalty
+from basu.metrics.leaderboard.rules import SCENARIOS_ONLY, Kind, LeaderboardEvent, Version, penalty
 from basu.metrics.path_following import has_arrived
 from basu.metrics.red_lights import red_lights
 from basu.metrics.registry import Column, Drive, Metric, register, shown
@@ -33,7 +33,7 @@ class LeaderboardScores:
     driving: float  # 0..100, completion times penalty
     route_completion: float  # 0..100
     infraction_penalty: float  # 0..1
-    events: tuple[Event, ...]  # in order of time
+    events: tuple[LeaderboardEvent, ...]  # in order of time
     ended_by: Kind | None  # what would have ended the drive short of the end of the route
     not_measured: tuple[Kind, ...]  # counted as not having happened
 
@@ -55,7 +55,7 @@ def _scores(history: History, version: Version) -> LeaderboardScores:
     )
     events = _events(counted, version)
     if end.by is not None:
-        events = (*events, Event(kind=end.by, tick=end.tick))
+        events = (*events, LeaderboardEvent(kind=end.by, tick=end.tick))
     completion = _completion(counted, end, version)
     factor = penalty(version, events)
     return LeaderboardScores(
@@ -69,18 +69,18 @@ def _scores(history: History, version: Version) -> LeaderboardScores:
     )
 
 
-def _events(history: History, version: Version) -> tuple[Event, ...]:
+def _events(history: History, version: Version) -> tuple[LeaderboardEvent, ...]:
     """Everything that a version would have written down, without what ends a drive."""
     return (
         *collisions(history, version),
-        *(Event(kind=Kind.RED_LIGHT, tick=found.tick) for found in red_lights(history)),
-        *(Event(kind=Kind.STOP, tick=found.tick) for found in stop_signs(history)),
+        *(LeaderboardEvent(kind=Kind.RED_LIGHT, tick=found.tick) for found in red_lights(history)),
+        *(LeaderboardEvent(kind=Kind.STOP, tick=found.tick) for found in stop_signs(history)),
         *outside_lanes(history, version),
         *(() if version is Version.V1_0 else too_slow(history)),
     )
 
 
-def _completion(history: History, end: Ending, version: Version) -> float:
+def _completion(history: History, end: LeaderboardEnding, version: Version) -> float:
     """The share of the route in per cent; all of it where the drive ended at its end.
 
     A drive that the benchmark took for arrived, and ended, is let arrive: on a route of less than 100 m the leaderboard

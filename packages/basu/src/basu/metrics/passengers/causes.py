@@ -104,7 +104,7 @@ RED, YELLOW = 0, 1  # carla.TrafficLightState
 LOOK_BACK_S = 2.0  # what the vehicle did before a phantom stop
 
 
-class Kind(enum.Enum):
+class StopCause(enum.Enum):
     """What a harsh stop was for."""
 
     CONTACT = "contact"
@@ -122,14 +122,14 @@ class Kind(enum.Enum):
 class Cause(NamedTuple):
     """One reason, and the braking from the stop's onset on that would have met it."""
 
-    kind: Kind
+    kind: StopCause
     away_m: float  # from the front bumper; nan for nothing
     needed_mps2: float  # 0 for nothing
     detail: str
 
 
 def cause(history: History, stop: HarshStop) -> Cause:
-    """A contact, else the reason with the largest demand, else `Kind.NOTHING` with its details."""
+    """A contact, else the reason with the largest demand, else `StopCause.NOTHING` with its details."""
     contact = _contact(history, stop)
     if contact is not None:
         return contact
@@ -148,10 +148,10 @@ def _reasons(history: History, stop: HarshStop) -> Iterator[Cause]:
     yield from _halts(history, stop)
     yield from _slowdowns(history, stop)
     for actor in in_the_way(history, stop.onset_tick, reach_m(stop.from_mps)):
-        yield _reason(Kind.ACTOR, stop, actor.away_m, actor.speed_mps, actor.name)
+        yield _reason(StopCause.ACTOR, stop, actor.away_m, actor.speed_mps, actor.name)
 
 
-def _reason(kind: Kind, stop: HarshStop, away_m: float, target_mps: float, name: str) -> Cause:
+def _reason(kind: StopCause, stop: HarshStop, away_m: float, target_mps: float, name: str) -> Cause:
     """A reason to be no faster than ``target_mps`` after ``away_m``."""
     excess = max(0.0, stop.from_mps**2 - target_mps**2)
     needed_mps2 = excess / (2.0 * max(away_m, 0.5))
@@ -163,7 +163,7 @@ def _contact(history: History, stop: HarshStop) -> Cause | None:
     slack = round(CONTACT_S / history.facts.step_s)
     for event in history.collisions:
         if stop.onset_tick - slack <= event.tick <= stop.tick:
-            return Cause(Kind.CONTACT, 0.0, stop.strongest_mps2, f"the vehicle hit {event.other_type}")
+            return Cause(StopCause.CONTACT, 0.0, stop.strongest_mps2, f"the vehicle hit {event.other_type}")
     return None
 
 
@@ -178,14 +178,14 @@ def _lines(history: History, stop: HarshStop) -> Iterator[Cause]:
         if control.kind is ControlKind.TRAFFIC_LIGHT and not np.isin(shown, (RED, YELLOW)).any():
             continue
         name = f"{control.kind.value.replace('_', ' ')} {control.landmark_id}"
-        yield _reason(Kind(control.kind.value), stop, max(away_m, 0.0), 0.0, name)
+        yield _reason(StopCause(control.kind.value), stop, max(away_m, 0.0), 0.0, name)
 
 
 def _halts(history: History, stop: HarshStop) -> Iterator[Cause]:
     """Service stops, where the vehicle's origin halts, and the end of the route."""
     route, at_m = history.facts.route, float(history.frames["route_s_m"][stop.onset_tick])
-    ends = [(Kind.SERVICE_STOP, s.s_m, f"service stop '{s.name}'") for s in route.stops]
-    for kind, s_m, name in [*ends, (Kind.ROUTE_END, route.length_m, "the end of the route")]:
+    ends = [(StopCause.SERVICE_STOP, s.s_m, f"service stop '{s.name}'") for s in route.stops]
+    for kind, s_m, name in [*ends, (StopCause.ROUTE_END, route.length_m, "the end of the route")]:
         if -BEYOND_M <= s_m - at_m <= reach_m(stop.from_mps):
             yield _reason(kind, stop, max(s_m - at_m, 0.0), 0.0, name)
 
@@ -198,13 +198,13 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
     if here_mps < stop.from_mps - SLOWER_MPS:
         needed_mps2 = (stop.from_mps**2 - here_mps**2) / (2.0 * reach_m(stop.from_mps))
         detail = f"the limit of {here_mps:.1f} m/s, exceeded already, demanded {needed_mps2:.2f} m/s²"
-        yield Cause(Kind.LIMIT, 0.0, needed_mps2, detail)
+        yield Cause(StopCause.LIMIT, 0.0, needed_mps2, detail)
     ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
     for index in ahead.tolist():
         limit_mps = float(route.speed_limit_mps[index])
         if limit_mps < min(stop.from_mps - SLOWER_MPS, here_mps):
             yield _reason(
-                Kind.LIMIT, stop, float(route.s_m[index]) - at_m, limit_mps, f"a limit of {limit_mps:.1f} m/s"
+                StopCause.LIMIT, stop, float(route.s_m[index]) - at_m, limit_mps, f"a limit of {limit_mps:.1f} m/s"
             )
             break
     for index in ahead.tolist():
@@ -214,7 +214,7 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
         bend_mps = (STEP_MPS2 / max(curvature_1pm, 1e-6)) ** 0.5
         if bend_mps < stop.from_mps - SLOWER_MPS:
             name = f"a bend of {1.0 / curvature_1pm:.0f} m radius"
-            yield _reason(Kind.BEND, stop, float(route.s_m[index]) - at_m, bend_mps, name)
+            yield _reason(StopCause.BEND, stop, float(route.s_m[index]) - at_m, bend_mps, name)
 
 
 def _nothing(history: History, stop: HarshStop) -> Cause:
@@ -226,4 +226,4 @@ def _nothing(history: History, stop: HarshStop) -> Cause:
         f"nothing was ahead within {reach_m(stop.from_mps):.1f} m; in the {LOOK_BACK_S:.0f} s before, the place across "
         f"the route changed by {drift_m:.2f} m and the steering by {float(np.ptp(before['steer'])):.3f} of full lock"
     )
-    return Cause(Kind.NOTHING, float("nan"), 0.0, detail)
+    return Cause(StopCause.NOTHING, float("nan"), 0.0, detail)

@@ -35,7 +35,7 @@ GRAVITY_MPS2 = 9.80665  # standard gravity, ISO 80000-3
 JERK_WINDOW_S = 0.5  # UN Regulation No. 79, 03 series: jerk is a 500 ms moving average of the filtered derivative
 
 
-class Place(NamedTuple):
+class PassengerPlace(NamedTuple):
     """Where a passenger stands: m from the vehicle's origin, which lies on the road under the middle of its box."""
 
     forward_m: float
@@ -45,7 +45,7 @@ class Place(NamedTuple):
 
 # By the pole at the door of an EasyMile EZ10: at the front edge of the bay between the two benches, at the door's side,
 # on a floor 0.3 m above the road. Estimated from the outer size (4.02 m by 2.00 m); no drawing of the inside was found.
-STANDING = Place(forward_m=0.7, right_m=0.5, up_m=0.3)
+STANDING = PassengerPlace(forward_m=0.7, right_m=0.5, up_m=0.3)
 
 
 class Felt(NamedTuple):
@@ -67,7 +67,7 @@ class Felt(NamedTuple):
         return size
 
 
-def felt(history: History, place: Place = STANDING) -> Felt | None:
+def felt(history: History, place: PassengerPlace = STANDING) -> Felt | None:
     """What is felt at ``place``, or None for a record of fewer than four frames: not measurable is not zero.
 
     Each acceleration is the mean over the step that ends with its frame, from the recorded velocities; the first frame

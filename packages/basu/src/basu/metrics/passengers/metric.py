@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
-from basu.metrics.passengers.causes import Kind
+from basu.metrics.passengers.causes import StopCause
 from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 from basu.metrics.passengers.verdict import judge
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from basu.metrics.passengers.causes import Cause
     from basu.metrics.passengers.harsh_stops import HarshStop
     from basu.metrics.passengers.near_misses import Party
-    from basu.metrics.passengers.verdict import Judged
+    from basu.metrics.passengers.verdict import PassengerJudgement
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
@@ -63,7 +63,7 @@ _VIBRATION = record(
     reactions=listing(text()),
 )
 _CAUSE = record(
-    kind=choice([kind.value for kind in Kind]),
+    kind=choice([kind.value for kind in StopCause]),
     away_m=number("m", null=True),
     needed_mps2=number("m/s²", low=0),
     detail=text(),
@@ -233,7 +233,7 @@ def _boarding(visits: list[dict[str, Any]]) -> list[str]:
     ]
 
 
-def passengers_to_json(history: History, judged: Judged | None) -> dict[str, Any] | None:
+def passengers_to_json(history: History, judged: PassengerJudgement | None) -> dict[str, Any] | None:
     """The document; None for a ride too short to be judged."""
     if judged is None:
         return None

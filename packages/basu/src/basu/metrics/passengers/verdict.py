@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from basu.metrics.collisions import collisions
 from basu.metrics.lanes import against_route, in_oncoming_lane, off_road
-from basu.metrics.passengers.causes import Cause, Kind, cause
+from basu.metrics.passengers.causes import Cause, StopCause, cause
 from basu.metrics.passengers.comfort_score import (
     ComfortWeights,
     Harm,
@@ -24,7 +24,7 @@ from basu.metrics.passengers.comfort_score import (
     reactions,
     vibration,
 )
-from basu.metrics.passengers.felt import GRIP_MPS2, STANDING, Balance, Felt, Place, balance, felt
+from basu.metrics.passengers.felt import GRIP_MPS2, STANDING, Balance, Felt, PassengerPlace, balance, felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, fault_of, service, time_to_board
@@ -44,10 +44,10 @@ UNCOMFORTABLE_MPS2 = 0.8  # where "uncomfortable" begins, ISO 2631-1 annex C.2.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Judged:
+class PassengerJudgement:
     """All that the passengers have to say."""
 
-    place: Place
+    place: PassengerPlace
     harsh_mps2: float  # from which on a braking is a harsh stop
     felt: Felt
     balance: Balance
@@ -72,12 +72,12 @@ class Judged:
 def judge(
     history: History,
     weights: ComfortWeights | None = None,
-    place: Place = STANDING,
+    place: PassengerPlace = STANDING,
     harsh_mps2: float = HARSH_MPS2,
     *,
     tolerance_mps: float = TOLERANCE_MPS,
     ended_early: bool = False,
-) -> Judged | None:
+) -> PassengerJudgement | None:
     """Judge a ride as a passenger standing at ``place``; None for a record too short to feel anything.
 
     ``tolerance_mps`` is of speeding. ``ended_early`` says that the benchmark ended the drive before the end of its
@@ -91,7 +91,7 @@ def judge(
     stops = tuple((stop, cause(history, stop)) for stop in harsh_stops(sensed, harsh_mps2))
     parties, visits = near_misses(history), service(history)
     contacts, breaches = collisions(history), _breaches(history, tolerance_mps)
-    phantom = [why.kind is Kind.NOTHING for _, why in stops]
+    phantom = [why.kind is StopCause.NOTHING for _, why in stops]
     harm = Harm(
         contacts=len(contacts),
         completion=float(_went(history)) if ended_early else completion(history),
@@ -102,7 +102,7 @@ def judge(
     )
     shaken_mps2 = on_the_move_mps2(shaken, sensed, upright)
     measured = parts(upright, phantom, shaken_mps2, harm, visits)
-    return Judged(
+    return PassengerJudgement(
         place=place,
         harsh_mps2=harsh_mps2,
         felt=sensed,
@@ -169,8 +169,8 @@ def _rules_and_service(
 def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken_mps2: float) -> list[str]:
     """Sentences about harsh stops, strong pushes and shaking."""
     found = [
-        f"{'phantom' if why.kind is Kind.NOTHING else 'harsh'} stop at {stop.t_s:.1f} s from {stop.from_mps:.2f} m/s, "
-        f"up to {stop.strongest_mps2:.2f} m/s²: {why.detail}"
+        f"{'phantom' if why.kind is StopCause.NOTHING else 'harsh'} stop at {stop.t_s:.1f} s "
+        f"from {stop.from_mps:.2f} m/s, up to {stop.strongest_mps2:.2f} m/s²: {why.detail}"
         for stop, why in stops
     ]
     if upright.grip_s > 0.0:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Event:
+class MarkedEvent:
     """One of them."""
 
     label: str  # 1, 2, 3 for infractions, a, b, c for the rest
@@ -41,7 +41,7 @@ class Event:
         return f"{what} {self.label}: {words(self.kind)} at {self.t_s:.1f} s"
 
 
-def events(result: Result) -> tuple[Event, ...]:
+def events(result: Result) -> tuple[MarkedEvent, ...]:
     """Return all of a result: first the infractions, then the rest, each in order of time."""
     penalties = result.scoring["penalties"]
     scored = [
@@ -54,9 +54,9 @@ def events(result: Result) -> tuple[Event, ...]:
     return (*scored, *rest)
 
 
-def _event(label: str, anchor: str, factor: float | None, row: Mapping[str, Any]) -> Event:
+def _event(label: str, anchor: str, factor: float | None, row: Mapping[str, Any]) -> MarkedEvent:
     """Return a row of a result."""
-    return Event(
+    return MarkedEvent(
         label=label,
         anchor=anchor,
         kind=row["kind"],
@@ -117,7 +117,7 @@ def symbol(kind: str, label: str = "", *, scored: bool = True) -> Element:
     return e("svg", outline, text, viewBox="-1 -1 26 26", class_=style, aria_hidden="true")
 
 
-def link(event: Event, style: str) -> Element:
+def link(event: MarkedEvent, style: str) -> Element:
     """Return a mark that opens the evidence of what it marks; ``style`` places it."""
     return e(
         "a",

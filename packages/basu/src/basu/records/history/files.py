@@ -22,7 +22,7 @@ from basu.records.history.facts_document import check_facts
 from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
 from basu.records.history.sumo import read_sumo, write_sumo
 from basu.records.history.tables import to_arrow
-from basu.routing import Control, ControlKind, Route, Stop
+from basu.routing import ControlKind, Route, RouteControl, Stop
 from basu.routing.timetable import timetable_from_json, timetable_to_json
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def route_from_json(document: dict[str, Any]) -> Route:
         speed_limit_mps=np.array(limits, dtype=np.float64),
         stops=tuple(Stop(**stop) for stop in document["stops"]),
         timetable=timetable_from_json(document["timetable"]) if "timetable" in document else None,
-        controls=tuple(Control(**{**c, "kind": ControlKind(c["kind"])}) for c in document["controls"]),
+        controls=tuple(RouteControl(**{**c, "kind": ControlKind(c["kind"])}) for c in document["controls"]),
         **arrays,
     )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.episode import Towns
-from basu.jobs.job import After, Played, PlayerSpec
+from basu.jobs.job import After, JobOutcome, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
 from basu.running.scenario_runs.chosen_cases import files_of
@@ -84,14 +84,14 @@ def open_cases(
     with maps_of(library.cases) as folders, simulator_for(with_maps(options.simulator, folders)) as simulator:
         session = CaseSession(options, simulator, Towns(simulator), scoring)
 
-        def play(job: CaseJob) -> Played:
+        def play(job: CaseJob) -> JobOutcome:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             played = play_case(session, loaded, playable, output / plain(loaded.name), job.name, job.repetition)
             done = played.to_send()
             status = played.result.outcome.status
             if status is Status.INTERRUPTED:
-                return Played(done, After.INTERRUPTED)
-            return Played(done, After.FRESH if status in ending else After.GO_ON)
+                return JobOutcome(done, After.INTERRUPTED)
+            return JobOutcome(done, After.FRESH if status in ending else After.GO_ON)
 
         yield play

@@ -19,7 +19,7 @@ from basu.scenarios.actions.one_frame import (
     Together,
     Wait,
 )
-from basu.scenarios.actions.path_follower import Limits, PathFollower
+from basu.scenarios.actions.path_follower import FollowerLimits, PathFollower
 from basu.scenarios.actions.walking import WalkAlong
 
 __all__ = [
@@ -33,11 +33,11 @@ __all__ = [
     "DriveAlong",
     "Either",
     "FollowEgo",
+    "FollowerLimits",
     "Hold",
     "InTurn",
     "JitterControls",
     "LetGo",
-    "Limits",
     "Meanwhile",
     "OpenDoor",
     "PathFollower",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.scenarios.actions.path_follower import LOOK_M, AtEnd, Limits, PathFollower, minded
+from basu.scenarios.actions.path_follower import LOOK_M, AtEnd, FollowerLimits, PathFollower, minded
 from basu.scenarios.stage import EGO
 from basu.scenarios.triggers.along_route import LEAST_MPS, rests_in_s
 
@@ -71,7 +71,7 @@ class DriveAlong(PathFollower):
             f"{actor} drives {path.length_m if to_m is None else to_m:.0f} m at {how_fast} m/s",
             actor,
             path if to_m is None else path.part(0.0, to_m),
-            limits=Limits(accelerate_mps2, brake_mps2),
+            limits=FollowerLimits(accelerate_mps2, brake_mps2),
             at_end=at_end,
             minds=minded(considerate=considerate, minds=minds),
         )
@@ -118,7 +118,7 @@ class FollowEgo(PathFollower):
         brake_mps2: float = 6.0,
     ) -> None:
         super().__init__(
-            f"{actor} follows the ego at {gap_m:g} m", actor, path, limits=Limits(accelerate_mps2, brake_mps2)
+            f"{actor} follows the ego at {gap_m:g} m", actor, path, limits=FollowerLimits(accelerate_mps2, brake_mps2)
         )
         self.gap_m, self.for_s, self.reaction_s, self.top_mps = gap_m, for_s, reaction_s, top_mps
 
@@ -178,7 +178,7 @@ class ReachAtEgosArrival(PathFollower):
             f"{actor} gets to the meeting point {when}",
             actor,
             path,
-            limits=Limits(accelerate_mps2, brake_mps2),
+            limits=FollowerLimits(accelerate_mps2, brake_mps2),
             at_end=at_end,
             minds=minds,
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from basu.scenarios.actions.path_follower import AtEnd, Limits, PathFollower, minded
+from basu.scenarios.actions.path_follower import AtEnd, FollowerLimits, PathFollower, minded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,7 +48,7 @@ class Accelerate(_ToSpeed):
             f"{actor} accelerates to {to_mps:g} m/s",
             actor,
             path,
-            limits=Limits(at_mps2, at_mps2),
+            limits=FollowerLimits(at_mps2, at_mps2),
             minds=minded(considerate=considerate, minds=minds),
         )
         self.to_mps = to_mps
@@ -61,7 +61,11 @@ class Brake(_ToSpeed):
         goal = f" to {to_mps:g} m/s" if to_mps else ""
         at_end: AtEnd = "go on" if to_mps else "hold"
         super().__init__(
-            f"{actor} brakes{goal} at {at_mps2:g} m/s²", actor, path, limits=Limits(at_mps2, at_mps2), at_end=at_end
+            f"{actor} brakes{goal} at {at_mps2:g} m/s²",
+            actor,
+            path,
+            limits=FollowerLimits(at_mps2, at_mps2),
+            at_end=at_end,
         )
         self.to_mps = to_mps
 
@@ -105,7 +109,7 @@ class ChangeLane(PathFollower):
         speed_mps: float | None = None,
         considerate: bool = False,
         minds: Sequence[str] = (),
-        limits: Limits = Limits(),  # noqa: B008 - a tuple cannot be changed
+        limits: FollowerLimits = FollowerLimits(),  # noqa: B008 - a tuple cannot be changed
         at_end: AtEnd = "go on",
         name: str = "",
     ) -> None:

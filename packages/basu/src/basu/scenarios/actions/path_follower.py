@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.scenarios.paths import OnPath
-    from basu.scenarios.stage import Body, Stage
+    from basu.scenarios.stage import ActorBox, Stage
 
 AtEnd = Literal["hold", "go on", "vanish"]
 BACKWARDS_RAD = math.radians(100.0)  # a path that begins farther off a vehicle's heading leads behind it
@@ -27,7 +27,7 @@ JAM_M, HEADWAY_S = 2.0, 1.0  # of the follower: the gap at rest, and what it kee
 LOOK_M = 60.0  # ahead
 
 
-class Limits(NamedTuple):
+class FollowerLimits(NamedTuple):
     """How hard a path follower accelerates and brakes, m/s²."""
 
     accelerate_mps2: float = 2.5
@@ -48,7 +48,7 @@ class PathFollower(Action):
         actor: str,
         path: Path | None,
         *,
-        limits: Limits = Limits(),  # noqa: B008 - a tuple cannot be changed
+        limits: FollowerLimits = FollowerLimits(),  # noqa: B008 - a tuple cannot be changed
         at_end: AtEnd = "go on",
         minds: Sequence[str] = (),
     ) -> None:
@@ -111,7 +111,7 @@ class PathFollower(Action):
             return None
         return f"{self.s_m - self.began_m:.0f} m driven, at {self.speed_mps:.1f} m/s"
 
-    def _drive(self, body: Body) -> None:
+    def _drive(self, body: ActorBox) -> None:
         """Change the speed within the limits and command this frame's motion."""
         step_s, wanted_mps = self.stage.step_s, self.wanted_mps()
         rise_mps, fall_mps = self.limits.accelerate_mps2 * step_s, self.limits.brake_mps2 * step_s
@@ -121,7 +121,7 @@ class PathFollower(Action):
         self.speed_mps = speed_mps
         lead(self.stage, self.actor, self.path, self.near, speed_mps)
 
-    def _followed_mps(self, body: Body) -> float:
+    def _followed_mps(self, body: ActorBox) -> float:
         """The speed by the intelligent driver model towards the nearest minded actor; inf without one ahead.
 
         Treiber, Hennecke and Helbing 2000, "Congested traffic states", eq. 2-3.
@@ -151,7 +151,7 @@ class Ahead(NamedTuple):
     speed_mps: float  # of the other, along the path
 
 
-def gap_ahead(path: Path, s_m: float, body: Body, other: Body) -> Ahead | None:
+def gap_ahead(path: Path, s_m: float, body: ActorBox, other: ActorBox) -> Ahead | None:
     """How far another is ahead on a path that ``body`` follows at ``s_m``; None where it is not on it."""
     if math.hypot(other.x_m - body.x_m, other.y_m - body.y_m) > LOOK_M:
         return None

@@ -14,7 +14,7 @@ are judged of every case, whether its scenario names them or not.
 
 from basu.scenarios.criteria.comfort import Gentle
 from basu.scenarios.criteria.contact import NoCollision
-from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played, Thing
+from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played, StandingThing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
 from basu.scenarios.criteria.lane import KeepsLane, Regains
 from basu.scenarios.criteria.stopping import StoppedFor
@@ -49,8 +49,8 @@ __all__ = [
     "Reaches",
     "ReachesPoint",
     "Regains",
+    "StandingThing",
     "StoppedFor",
-    "Thing",
     "margins_of",
     "reported_always",
 ]

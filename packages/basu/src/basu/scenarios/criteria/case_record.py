@@ -10,7 +10,7 @@ from basu.files import loads
 from basu.outcome import Outcome, Status
 from basu.records.history.files import read_history
 from basu.routing.planned_route import until
-from basu.scenarios.criteria.criterion import Judgement, Played, Thing
+from basu.scenarios.criteria.criterion import Judgement, Played, StandingThing
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,7 +33,7 @@ def played_in(folder: Path) -> Played:
             history=read_history(folder),
             outcome=Outcome(Status(document["status"]), document["ended"]),
             roles={actor["id"]: actor["role"] for actor in document["actors"]},
-            things=tuple(Thing(**thing) for thing in document["things"]),
+            things=tuple(StandingThing(**thing) for thing in document["things"]),
             phases_s=document["phases_s"],
             timeout_s=document["timeout_s"],
         )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.passengers.causes import Kind, cause
+from basu.metrics.passengers.causes import StopCause, cause
 from basu.metrics.passengers.felt import felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, harsh_stops
 from basu.scenarios.criteria.criterion import Criterion
@@ -46,12 +46,12 @@ class Gentle(Criterion):
             return self.says(played, None, "the drive was too short to feel anything", unit="m/s²", limit=limit)
         record = present_in(played).history
         stops = [(s, cause(record, s)) for s in harsh_stops(sensed, self.harsh_mps2) if s.tick >= first]
-        counting = [(s, why) for s, why in stops if why.kind is Kind.NOTHING or not self.phantom_only]
+        counting = [(s, why) for s, why in stops if why.kind is StopCause.NOTHING or not self.phantom_only]
         if not counting:
             return self._calm(played, sensed, first, limit, caused=len(stops))
         worst, _ = max(counting, key=lambda found: found[0].strongest_mps2)
         said = [
-            f"{'phantom' if why.kind is Kind.NOTHING else 'harsh'} stop at {s.t_s:.2f} s from {s.from_mps:.2f} to "
+            f"{'phantom' if why.kind is StopCause.NOTHING else 'harsh'} stop at {s.t_s:.2f} s from {s.from_mps:.2f} to "
             f"{s.to_mps:.2f} m/s, up to {s.strongest_mps2:.2f} m/s² and {s.jerk_mps3:.1f} m/s³: {why.detail}"
             for s, why in counting
         ]

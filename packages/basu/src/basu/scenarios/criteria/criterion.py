@@ -23,7 +23,7 @@ class Aspect(enum.Enum):
     COMPLETED = "completed"  # goals of the drive
 
 
-class Thing(NamedTuple):
+class StandingThing(NamedTuple):
     """Something that stood in the scenario and is not among the record's others: its box from above."""
 
     name: str
@@ -44,7 +44,7 @@ class Move(NamedTuple):
     pose: Pose | None
 
 
-def moved(things: Sequence[Thing], moves: Sequence[Move]) -> tuple[Thing, ...]:
+def moved(things: Sequence[StandingThing], moves: Sequence[Move]) -> tuple[StandingThing, ...]:
     """Where things stood, and from when until when: one entry for each place, moves in the order of their times."""
     latest = {thing.name: thing for thing in things}
     past = []
@@ -66,7 +66,7 @@ class Played(NamedTuple):
     history: History
     outcome: Outcome  # of the run
     roles: Mapping[int, str]  # of actor ids in the record, for those the scenario brought
-    things: tuple[Thing, ...]
+    things: tuple[StandingThing, ...]
     phases_s: Mapping[str, float]  # when each phase began, on the record's clock: trigger, conflict, resolution, end
     timeout_s: float
 

@@ -12,10 +12,10 @@ from basu.scenarios.triggers.motion import Trigger, named
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path
-    from basu.scenarios.stage import Body, Pose
+    from basu.scenarios.stage import ActorBox, Pose
 
 
-def _apart_m(one: Body | Pose, other: Body | Pose) -> float:
+def _apart_m(one: ActorBox | Pose, other: ActorBox | Pose) -> float:
     return math.hypot(one.x_m - other.x_m, one.y_m - other.y_m)
 
 

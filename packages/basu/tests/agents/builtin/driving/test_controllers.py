@@ -7,7 +7,7 @@ import pytest
 
 from basu.agents.builtin.driving.controllers import HOLD_BRAKE, DriveModel, PedalControl, steer_angle_rad
 from basu.agents.builtin.driving.path import make_path
-from basu.agents.builtin.scene import Body
+from basu.agents.builtin.scene import VehicleGeometry
 from driving_plant import DT_S, SHUTTLE_BODY, Plant, bends, drive, line, make_driver, make_route
 
 
@@ -49,7 +49,7 @@ def test_at_speed_the_wheel_is_turned_less_for_the_same_error() -> None:
 def test_on_a_steady_circle_the_angle_is_the_textbook_one() -> None:
     points_m = bends((60.0, 1 / 10))
     path = make_path(points_m, np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))]))
-    body = Body(wheelbase_m=2.8, rear_axle_m=1.4, front_m=2.0, rear_m=2.0, half_width_m=1.0)
+    body = VehicleGeometry(wheelbase_m=2.8, rear_axle_m=1.4, front_m=2.0, rear_m=2.0, half_width_m=1.0)
     at = path.index_at(30.0)
     slip_rad = math.asin(1.4 * path.curvature_1pm[at])
     yaw_rad = path.heading_rad[at] - slip_rad  # the nose of a turning vehicle points outwards at its middle

@@ -12,7 +12,7 @@ from basu.agents.builtin.driving.manner import (
     BASIC,
     CAUTIOUS,
     NORMAL,
-    Limits,
+    ComfortLimits,
     Manner,
     approach_accel_mps2,
     slowing_distance_m,
@@ -20,10 +20,10 @@ from basu.agents.builtin.driving.manner import (
 from basu.agents.builtin.driving.planner import FIRM, OVERSPEED_MPS
 from basu.metrics.scoring import TOLERANCE_MPS
 
-LIMITS = Limits(0.9, 0.8)
+LIMITS = ComfortLimits(0.9, 0.8)
 
 
-def driven_m(speed_mps: float, accel_mps2: float, target_mps: float, limits: Limits) -> float:
+def driven_m(speed_mps: float, accel_mps2: float, target_mps: float, limits: ComfortLimits) -> float:
     """The obvious way: at each tiny step brake deeper while there is time to release again, else release."""
     dt_s, way_m, v, a = 0.0005, 0.0, speed_mps, accel_mps2
     deepest = max(limits.accel_mps2, -accel_mps2)

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from basu.agents.builtin.driving.path import SMOOTHING_M, SPACING_M, Path, make_path
+from basu.agents.builtin.driving.path import SMOOTHING_M, SPACING_M, SampledPath, make_path
 from driving_plant import bends, line
 
 
-def path_of(points_m: NDArray[np.float64]) -> Path:
+def path_of(points_m: NDArray[np.float64]) -> SampledPath:
     s_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))])
     return make_path(points_m, s_m)
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from basu.agents.builtin.driving.manner import BASIC
-from basu.agents.builtin.driving.path import SPACING_M, Path, make_path
+from basu.agents.builtin.driving.path import SPACING_M, SampledPath, make_path
 from basu.agents.builtin.driving.speed_profile import (
     BRAKING_MPS2,
     LATERAL_ACCEL_MPS2,
@@ -23,7 +23,7 @@ from driving_plant import bends
 PIECES = st.lists(st.tuples(st.floats(5.0, 40.0), st.floats(-0.16, 0.16)), min_size=1, max_size=5)
 
 
-def laid_out(pieces: list[tuple[float, float]], posted_mps: float, cap_mps: float) -> tuple[Path, SpeedProfile]:
+def laid_out(pieces: list[tuple[float, float]], posted_mps: float, cap_mps: float) -> tuple[SampledPath, SpeedProfile]:
     points_m = bends(*pieces)
     s_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))])
     path = make_path(points_m, s_m)

@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from basu.agents.builtin.driving.manner import NORMAL
-from basu.agents.builtin.driving.path import SPACING_M, Path, make_path
+from basu.agents.builtin.driving.path import SPACING_M, SampledPath, make_path
 from basu.agents.builtin.passing.detour import TIGHTEST_1PM, Extent, make_detour, swing_m, tightest_swing_m
 from driving_plant import SHUTTLE_BODY, bends, line
 
 EXTENT = Extent(40.0, 56.0, 70.0, 86.0)
 
 
-def path_of(points_m: np.ndarray) -> Path:
+def path_of(points_m: np.ndarray) -> SampledPath:
     steps = np.hypot(*np.diff(points_m[:, :2], axis=0).T)
     return make_path(points_m, np.concatenate([[0.0], np.cumsum(steps)]), np.full(len(points_m), 3.2), SHUTTLE_BODY)
 
@@ -24,7 +24,7 @@ STRAIGHT = path_of(line(140.0))
 BEND = path_of(bends((30.0, 0.0), (80.0, 1 / 60), (30.0, 0.0)))
 
 
-def beside_m(path: Path, s_m: float) -> float:
+def beside_m(path: SampledPath, s_m: float) -> float:
     return float(path.points_m[path.index_at(s_m), 1])
 
 
@@ -38,7 +38,7 @@ def test_it_is_aside_where_it_should_be_and_in_the_lane_elsewhere() -> None:
 
 @pytest.mark.parametrize("lane", [STRAIGHT, BEND])
 @pytest.mark.parametrize("offset_m", [-2.7, 3.0])
-def test_headings_and_curvature_are_those_of_its_points(lane: Path, offset_m: float) -> None:
+def test_headings_and_curvature_are_those_of_its_points(lane: SampledPath, offset_m: float) -> None:
     path = make_detour(lane, EXTENT, offset_m, NORMAL, 4.5).path
     dx_m, dy_m = np.gradient(path.points_m[:, 0]), np.gradient(path.points_m[:, 1])
     heading_rad = np.unwrap(np.arctan2(dy_m, dx_m))

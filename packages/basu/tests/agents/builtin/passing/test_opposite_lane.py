@@ -5,11 +5,11 @@ import pytest
 from basu.agents.builtin.driving.manner import NORMAL
 from basu.agents.builtin.passing.detour import Extent, make_detour
 from basu.agents.builtin.passing.opposite_lane import Need, is_free, time_needed_s
-from basu.agents.builtin.scene import Ego, Kind, Other
+from basu.agents.builtin.scene import ActorKind, DrivenVehicle, Other
 from driving_plant import SHUTTLE_BODY, body_at, line, make_behavioral, make_route
 
 EXTENT = Extent(80.0, 96.0, 120.0, 136.0)
-STANDS = Ego(0.0, 78.0, 0.0, 0.0, 0.0)
+STANDS = DrivenVehicle(0.0, 78.0, 0.0, 0.0, 0.0)
 
 
 def free(*others: Other, sight_m: float = 350.0, junction_m: float = 550.0) -> bool:
@@ -18,14 +18,14 @@ def free(*others: Other, sight_m: float = 350.0, junction_m: float = 550.0) -> b
     path, road = driver.task.path, driver._road
     need = Need(make_detour(path, EXTENT, -2.7, NORMAL, 4.5), frozenset({7}), 0.9, 3.0, sight_m)
     place = path.find(STANDS.x_m, STANDS.y_m, 0.0)
-    return is_free(path, road, SHUTTLE_BODY, STANDS, place, [body_at(Kind.VEHICLE, 110.0, 0.0), *others], need)
+    return is_free(path, road, SHUTTLE_BODY, STANDS, place, [body_at(ActorKind.VEHICLE, 110.0, 0.0), *others], need)
 
 
 def car(x_m: float, y_m: float, speed_mps: float, yaw_deg: float) -> Other:
     velocity = {0.0: (speed_mps, 0.0), 180.0: (-speed_mps, 0.0), 90.0: (0.0, speed_mps), 270.0: (0.0, -speed_mps)}[
         yaw_deg
     ]
-    return body_at(Kind.VEHICLE, x_m, y_m, velocity_mps=velocity, yaw_deg=yaw_deg, number=8)
+    return body_at(ActorKind.VEHICLE, x_m, y_m, velocity_mps=velocity, yaw_deg=yaw_deg, number=8)
 
 
 def test_an_empty_street_is_free() -> None:
@@ -52,9 +52,9 @@ def test_an_actor_that_overtakes_us_goes_first() -> None:
 
 
 def test_what_stands_in_the_other_lane_blocks_it_only_there() -> None:
-    assert not free(body_at(Kind.VEHICLE, 115.0, -3.2, yaw_deg=180.0, number=8))
-    assert free(body_at(Kind.VEHICLE, 170.0, -3.2, yaw_deg=180.0, number=8))
-    assert free(body_at(Kind.PROP, 115.0, -5.5, number=8))
+    assert not free(body_at(ActorKind.VEHICLE, 115.0, -3.2, yaw_deg=180.0, number=8))
+    assert free(body_at(ActorKind.VEHICLE, 170.0, -3.2, yaw_deg=180.0, number=8))
+    assert free(body_at(ActorKind.PROP, 115.0, -5.5, number=8))
 
 
 def test_an_actor_that_moves_about_the_next_junction_may_turn_in() -> None:

@@ -6,7 +6,7 @@ import pytest
 from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
 from basu.agents.builtin.driving.path import make_path
 from basu.agents.builtin.passing.pulling_over import FORGOTTEN_S, NOTICED_S, Tailgating
-from basu.agents.builtin.scene import Ego, Kind, Other
+from basu.agents.builtin.scene import ActorKind, DrivenVehicle, Other
 from driving_plant import SHUTTLE_BODY, Log, Plant, body_at, drive, line, make_behavioral, make_route
 
 POINTS_M = line(200.0)
@@ -18,14 +18,16 @@ def notices(behind: Other | None, seconds: float, *, tailgating: Tailgating | No
     tailgating = tailgating or Tailgating(SHUTTLE_BODY, 1.0)
     place = PATH.find(100.0, 0.0, 0.0)
     for k in range(round(seconds / 0.05) + 1):
-        ego = Ego(from_s + 0.05 * k, 100.0, 0.0, 0.0, 6.0)
+        ego = DrivenVehicle(from_s + 0.05 * k, 100.0, 0.0, 0.0, 6.0)
         tailgating.step(ego, PATH, place, [] if behind is None else [behind])
     return tailgating.is_on
 
 
 def follower(gap_m: float, y_m: float = 0.0, yaw_deg: float = 0.0) -> Other:
     velocity = (6.0 * np.cos(np.radians(yaw_deg)), 6.0 * np.sin(np.radians(yaw_deg)))
-    return body_at(Kind.VEHICLE, 100.0 - SHUTTLE_BODY.rear_m - 2.2 - gap_m, y_m, velocity_mps=velocity, yaw_deg=yaw_deg)
+    return body_at(
+        ActorKind.VEHICLE, 100.0 - SHUTTLE_BODY.rear_m - 2.2 - gap_m, y_m, velocity_mps=velocity, yaw_deg=yaw_deg
+    )
 
 
 def test_an_actor_that_stays_close_is_noticed_after_a_moment_and_forgotten_after_another() -> None:
@@ -51,7 +53,7 @@ def drive_before(
 
     def behind(_time_s: float) -> list[Other]:
         x_m = plant.x_m - SHUTTLE_BODY.rear_m - 2.2 - gap_m
-        return [body_at(Kind.VEHICLE, x_m, 0.0, velocity_mps=(plant.speed_mps, 0.0))]
+        return [body_at(ActorKind.VEHICLE, x_m, 0.0, velocity_mps=(plant.speed_mps, 0.0))]
 
     driver = make_behavioral(
         make_route(line(260.0), limit_mps=limit_mps), manner, cap_mps=cap_mps, right_lane_m=right_lane_m
@@ -94,7 +96,7 @@ def test_where_a_lane_leads_the_same_way_one_moves_over_and_comes_back_when_the_
         at[1] = min(at[1] + 0.1, 9.0) if hurries else max(0.0, plant.speed_mps + 0.5 * (gap_m - 3.0))
         at[0] += at[1] * 0.05
         gaps.append(max(abs(at[0] - plant.x_m) - 4.21, abs(plant.y_m) - 1.95))
-        return [body_at(Kind.VEHICLE, at[0], 0.0, velocity_mps=(at[1], 0.0))]
+        return [body_at(ActorKind.VEHICLE, at[0], 0.0, velocity_mps=(at[1], 0.0))]
 
     gaps: list[float] = []
     driver = make_behavioral(make_route(line(500.0)), right_lane_m=3.2)
@@ -111,8 +113,8 @@ def test_a_lane_that_is_taken_is_left_alone() -> None:
     def others(_time_s: float) -> list[Other]:
         x_m = plant.x_m - SHUTTLE_BODY.rear_m - 2.2 - 3.0
         velocity = (plant.speed_mps, 0.0)
-        beside = body_at(Kind.VEHICLE, plant.x_m, 3.2, velocity_mps=velocity, number=8)
-        return [body_at(Kind.VEHICLE, x_m, 0.0, velocity_mps=velocity), beside]
+        beside = body_at(ActorKind.VEHICLE, plant.x_m, 3.2, velocity_mps=velocity, number=8)
+        return [body_at(ActorKind.VEHICLE, x_m, 0.0, velocity_mps=velocity), beside]
 
     log = drive(make_behavioral(make_route(line(300.0)), right_lane_m=3.2), plant, 30.0, others)
     assert np.abs(log.y_m).max() < 0.1

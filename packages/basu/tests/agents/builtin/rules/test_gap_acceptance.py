@@ -18,7 +18,7 @@ from basu.agents.builtin.driving.manner import (
 )
 from basu.agents.builtin.driving.path import make_path
 from basu.agents.builtin.rules.gap_acceptance import Movement, make_rule, movement, time_to_cover_s
-from basu.agents.builtin.scene import Kind, Other
+from basu.agents.builtin.scene import ActorKind, Other
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, Log, Plant, bends, body_at, drive, line, make_behavioral, make_route
 
@@ -80,7 +80,9 @@ def at_a_stop_sign(manner: Manner, stream: list[tuple[float, float]], seconds: f
 
     def cars(time_s: float) -> list[Other]:
         return [
-            body_at(Kind.VEHICLE, CROSSED_AT_X_M, v * (time_s - at_s), velocity_mps=(0.0, v), yaw_deg=90.0, number=k)
+            body_at(
+                ActorKind.VEHICLE, CROSSED_AT_X_M, v * (time_s - at_s), velocity_mps=(0.0, v), yaw_deg=90.0, number=k
+            )
             for k, (at_s, v) in enumerate(stream)
             if abs(v * (time_s - at_s)) < 80.0
         ]
@@ -122,7 +124,8 @@ def test_an_actor_that_turns_left_lets_the_ones_pass_that_come_towards_it() -> N
     def cars(time_s: float) -> list[Other]:
         xs = [110.0 + 24.0 * k - 8.0 * (time_s - 8.0) for k in range(5)]
         return [
-            body_at(Kind.VEHICLE, x, -3.2, velocity_mps=(-8.0, 0.0), yaw_deg=180.0, number=k) for k, x in enumerate(xs)
+            body_at(ActorKind.VEHICLE, x, -3.2, velocity_mps=(-8.0, 0.0), yaw_deg=180.0, number=k)
+            for k, x in enumerate(xs)
         ]
 
     log = drive(make_behavioral(route), Plant(0.0, 0.0, 0.0), 60.0, cars)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Following, Manner, slowing_distance_m
 from basu.agents.builtin.driving.planner import RESERVE, Planner
 from basu.agents.builtin.rules.obstacles import CLOSEST_M, LEADER_LIMIT_MPS2, floor, follow_mps2
-from basu.agents.builtin.scene import Kind, Other
+from basu.agents.builtin.scene import ActorKind, Other
 from driving_plant import (
     DT_S,
     SHUTTLE_BODY,
@@ -58,7 +58,7 @@ def test_more_room_never_asks_for_more_braking(gap_m: float, own: float, leader:
 @pytest.mark.parametrize("leads_mps", [3.0, 5.0])
 def test_a_steady_leader_is_followed_at_the_manners_own_distance(manner: Manner, leads_mps: float) -> None:
     def leader(time_s: float) -> list[Other]:
-        return [body_at(Kind.VEHICLE, 25.0 + leads_mps * time_s, 0.0, velocity_mps=(leads_mps, 0.0))]
+        return [body_at(ActorKind.VEHICLE, 25.0 + leads_mps * time_s, 0.0, velocity_mps=(leads_mps, 0.0))]
 
     log = drive(make_behavioral(make_route(line(330.0)), manner), Plant(0.0, 0.0, 0.0), 55.0, leader)
     gap_m = leader(log.time_s[-1])[0].x_m - 2.2 - (log.x_m[-1] + SHUTTLE_BODY.front_m)
@@ -97,7 +97,7 @@ def test_driven_a_leader_that_brakes_to_a_stop_is_stopped_behind(manner: Manner,
         braked_s = min(max(0.0, time_s - 25.0), 6.0 / brakes_mps2)
         speed_mps = 6.0 - brakes_mps2 * braked_s
         x_m = 15.0 + 6.0 * min(time_s, 25.0) + 6.0 * braked_s - brakes_mps2 * braked_s**2 / 2.0
-        return [body_at(Kind.VEHICLE, x_m, 0.0, velocity_mps=(speed_mps, 0.0))]
+        return [body_at(ActorKind.VEHICLE, x_m, 0.0, velocity_mps=(speed_mps, 0.0))]
 
     driver = make_behavioral(make_route(line(400.0)), manner, left_width_m=0.0)
     log = drive(driver, Plant(0.0, 0.0, 0.0), 48.0, leader)
@@ -131,7 +131,7 @@ class Leader:
             self.speed_mps = min(max(0.0, self.speed_mps + self._accel_mps2(self.time_s) * DT_S), self._top_mps)
             self.x_m += self.speed_mps * DT_S
             self.time_s += DT_S
-        return [body_at(Kind.VEHICLE, self.x_m, 0.2, velocity_mps=(self.speed_mps, 0.0))]
+        return [body_at(ActorKind.VEHICLE, self.x_m, 0.2, velocity_mps=(self.speed_mps, 0.0))]
 
 
 def least_gap_m(log: Log, others: Callable[[float], list[Other]]) -> float:
@@ -150,8 +150,8 @@ def on_a_street(others: Callable[[float], list[Other]], seconds: float = 50.0, l
     return drive(make_driver(make_route(line(length_m))), Plant(0.0, 0.0, 0.0), seconds, others)
 
 
-@pytest.mark.parametrize("kind", list(Kind))
-def test_what_stands_in_the_way_is_stopped_for_in_comfort(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", list(ActorKind))
+def test_what_stands_in_the_way_is_stopped_for_in_comfort(kind: ActorKind) -> None:
     log = on_a_street(lambda _: [body_at(kind, 100.0, 0.5)])
     assert log.speed_mps[-1] == 0.0
     assert 1.5 < 100.0 - body_at(kind, 0.0, 0.0).half_length_m - (log.s_m[-1] + FRONT_M) < 2.5
@@ -159,7 +159,9 @@ def test_what_stands_in_the_way_is_stopped_for_in_comfort(kind: Kind) -> None:
 
 
 def test_what_stands_beside_the_way_is_driven_past() -> None:
-    log = on_a_street(lambda _: [body_at(Kind.VEHICLE, 60.0, 2.4), body_at(Kind.WALKER, 80.0, -1.8, number=8)])
+    log = on_a_street(
+        lambda _: [body_at(ActorKind.VEHICLE, 60.0, 2.4), body_at(ActorKind.WALKER, 80.0, -1.8, number=8)]
+    )
     assert log.s_m[-1] > 200.0
     assert log.speed_mps[(log.s_m > 50.0) & (log.s_m < 90.0)].min() > 6.5
 
@@ -194,7 +196,7 @@ def test_an_actor_that_crosses_on_foot_is_not_touched(start_s: float, walks_mps:
     def walker(time_s: float) -> list[Other]:
         walking = time_s >= start_s
         y_m = -6.0 + walks_mps * max(0.0, time_s - start_s)
-        return [body_at(Kind.WALKER, 60.0, y_m, velocity_mps=(0.0, walks_mps if walking else 0.0))]
+        return [body_at(ActorKind.WALKER, 60.0, y_m, velocity_mps=(0.0, walks_mps if walking else 0.0))]
 
     log = on_a_street(walker, 40.0)
     assert least_gap_m(log, walker) > 0.3
@@ -206,7 +208,7 @@ def test_an_actor_that_steps_out_is_braked_for_as_hard_as_it_takes(ahead_m: floa
     # 6.7 m/s: within the drive model's limits 7 m are just enough to stop
     driver, plant = make_driver(make_route(line(200.0))), Plant(40.0, 0.0, 0.0, 6.7)
     at_m = 40.0 + FRONT_M + ahead_m
-    walker = lambda _: [body_at(Kind.WALKER, at_m, 1.0)]  # noqa: E731
+    walker = lambda _: [body_at(ActorKind.WALKER, at_m, 1.0)]  # noqa: E731
     log = drive(driver, plant, 6.0, walker)
     assert log.speed_mps[-1] == 0.0
     assert at_m - 0.2 - (log.x_m[-1] + FRONT_M) > 0.1
@@ -216,14 +218,17 @@ def test_an_actor_that_steps_out_is_braked_for_as_hard_as_it_takes(ahead_m: floa
 def test_a_car_in_the_opposite_lane_of_a_bend_is_no_reason_to_brake() -> None:
     route = make_route(bends((40.0, 0.0), (30.0, 1 / 25), (60.0, 0.0)))
     free = drive(make_driver(route), Plant(0.0, 0.0, 0.0), 25.0)
-    oncoming = [body_at(Kind.VEHICLE, 47.0, -2.9, velocity_mps=(-6.0, -0.5), yaw_deg=185.0)]
+    oncoming = [body_at(ActorKind.VEHICLE, 47.0, -2.9, velocity_mps=(-6.0, -0.5), yaw_deg=185.0)]
     met = drive(make_driver(route), Plant(0.0, 0.0, 0.0), 25.0, lambda t: oncoming if 8.0 < t < 10.0 else [])
     assert met.s_m[-1] == pytest.approx(free.s_m[-1], abs=0.5)
 
 
 def test_an_actor_behind_is_not_looked_at() -> None:
     log = drive(
-        make_driver(make_route(line(300.0))), Plant(50.0, 0.0, 0.0), 20.0, lambda _: [body_at(Kind.VEHICLE, 44.0, 0.0)]
+        make_driver(make_route(line(300.0))),
+        Plant(50.0, 0.0, 0.0),
+        20.0,
+        lambda _: [body_at(ActorKind.VEHICLE, 44.0, 0.0)],
     )
     assert log.speed_mps[-1] > 6.5
 
@@ -233,7 +238,7 @@ def test_an_actor_that_comes_towards_a_behavioral_driver_in_its_lane_is_given_ro
     def wrong_way(time_s: float) -> list[Other]:
         braked_s = min(max(0.0, time_s - brakes_at_s), 2.0)
         x_m = 220.0 - 8.0 * min(time_s, brakes_at_s) - 8.0 * braked_s + 2.0 * braked_s**2
-        return [body_at(Kind.VEHICLE, x_m, -0.5, velocity_mps=(4.0 * braked_s - 8.0, 0.0), yaw_deg=180.0)]
+        return [body_at(ActorKind.VEHICLE, x_m, -0.5, velocity_mps=(4.0 * braked_s - 8.0, 0.0), yaw_deg=180.0)]
 
     driver = make_behavioral(make_route(line(300.0)), left_width_m=0.0)
     log = drive(driver, Plant(0.0, 0.0, 0.0), 25.0, wrong_way)
@@ -242,6 +247,6 @@ def test_an_actor_that_comes_towards_a_behavioral_driver_in_its_lane_is_given_ro
 
 
 def test_an_actor_that_cuts_the_corner_into_the_other_lane_is_not_braked_for() -> None:
-    cutting = lambda _: [body_at(Kind.VEHICLE, 110.0, -2.2, velocity_mps=(-10.4, -1.7), yaw_deg=189.0)]  # noqa: E731
+    cutting = lambda _: [body_at(ActorKind.VEHICLE, 110.0, -2.2, velocity_mps=(-10.4, -1.7), yaw_deg=189.0)]  # noqa: E731
     log = drive(make_behavioral(make_route(line(300.0))), Plant(70.0, 0.0, 0.0, 6.7), 0.5, cutting)
     assert log.speed_mps.min() > 6.4

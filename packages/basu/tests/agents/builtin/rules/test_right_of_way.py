@@ -9,7 +9,7 @@ from basu.agents.builtin.driving.path import make_path
 from basu.agents.builtin.rules.gap_acceptance import make_zone
 from basu.agents.builtin.rules.right_of_way import COURTESY_S, REST_S, StopPhase, StopSign, YieldPhase, YieldSign
 from basu.agents.builtin.rules.stopping_lines import BEFORE_LINE_M
-from basu.agents.builtin.scene import Ego, Kind, Other
+from basu.agents.builtin.scene import ActorKind, DrivenVehicle, Other
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, Plant, body_at, drive, line, make_driver, make_route
 
@@ -25,7 +25,7 @@ def sign() -> StopSign:
 
 def ask(stop: StopSign, time_s: float, front_s_m: float, speed_mps: float, *others: Other) -> bool:
     """Whether the sign asks to stop."""
-    return stop.step(Ego(time_s, front_s_m - FRONT_M, 0.0, 0.0, speed_mps), front_s_m, others) is not None
+    return stop.step(DrivenVehicle(time_s, front_s_m - FRONT_M, 0.0, 0.0, speed_mps), front_s_m, others) is not None
 
 
 def test_one_rests_at_the_line_and_goes_on_when_no_actor_comes() -> None:
@@ -62,13 +62,17 @@ def test_crossing_traffic_goes_first() -> None:
     for k in range(60):
         y_m = -30.0 + 0.8 * k  # 8 m/s to the south, through the zone at x = 56
         waits = ask(
-            stop, 2.0 + 0.1 * k, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, y_m, velocity_mps=(0.0, 8.0), yaw_deg=90.0)
+            stop,
+            2.0 + 0.1 * k,
+            AT_LINE_M,
+            0.0,
+            body_at(ActorKind.VEHICLE, 56.0, y_m, velocity_mps=(0.0, 8.0), yaw_deg=90.0),
         )
         assert waits == (y_m < 2.5), y_m
 
 
 def test_an_actor_that_stood_there_first_is_let_go_but_not_for_ever() -> None:
-    stop, stood = sign(), body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0)
+    stop, stood = sign(), body_at(ActorKind.VEHICLE, 56.0, -7.0, yaw_deg=90.0)
     assert ask(stop, 0.0, AT_LINE_M, 0.0, stood)
     assert ask(stop, COURTESY_S - 0.1, AT_LINE_M, 0.0, stood)
     assert not ask(stop, COURTESY_S + 0.1, AT_LINE_M, 0.0, stood)
@@ -76,27 +80,29 @@ def test_an_actor_that_stood_there_first_is_let_go_but_not_for_ever() -> None:
 
 def test_an_actor_that_sets_off_first_is_waited_for_until_it_is_through() -> None:
     stop = sign()
-    ask(stop, 0.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
-    assert ask(stop, 2.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -5.0, velocity_mps=(0.0, 2.0), yaw_deg=90.0))
-    assert not ask(stop, 6.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, 9.0, velocity_mps=(0.0, 4.0), yaw_deg=90.0))
+    ask(stop, 0.0, AT_LINE_M, 0.0, body_at(ActorKind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
+    assert ask(stop, 2.0, AT_LINE_M, 0.0, body_at(ActorKind.VEHICLE, 56.0, -5.0, velocity_mps=(0.0, 2.0), yaw_deg=90.0))
+    assert not ask(
+        stop, 6.0, AT_LINE_M, 0.0, body_at(ActorKind.VEHICLE, 56.0, 9.0, velocity_mps=(0.0, 4.0), yaw_deg=90.0)
+    )
 
 
 def test_an_actor_that_arrives_later_and_stands_does_not_hold_one_up() -> None:
     stop = sign()
     ask(stop, 0.0, AT_LINE_M, 0.0)
-    assert not ask(stop, 2.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
+    assert not ask(stop, 2.0, AT_LINE_M, 0.0, body_at(ActorKind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
 
 
 def test_a_parked_car_along_the_street_is_no_actor_to_wait_for() -> None:
-    stop, parked = sign(), body_at(Kind.VEHICLE, 57.0, 4.5)
+    stop, parked = sign(), body_at(ActorKind.VEHICLE, 57.0, 4.5)
     ask(stop, 0.0, AT_LINE_M, 0.0, parked)
     assert not ask(stop, REST_S + 0.05, AT_LINE_M, 0.0, parked)
 
 
 def test_an_actor_that_comes_from_behind_and_one_that_comes_towards_us_in_its_lane_do_not_cross() -> None:
     stop = sign()
-    behind = body_at(Kind.VEHICLE, 35.0, 0.0, velocity_mps=(5.0, 0.0), number=8)
-    oncoming = body_at(Kind.VEHICLE, 75.0, -3.2, velocity_mps=(-8.0, 0.0), yaw_deg=180.0, number=9)
+    behind = body_at(ActorKind.VEHICLE, 35.0, 0.0, velocity_mps=(5.0, 0.0), number=8)
+    oncoming = body_at(ActorKind.VEHICLE, 75.0, -3.2, velocity_mps=(-8.0, 0.0), yaw_deg=180.0, number=9)
     ask(stop, 0.0, AT_LINE_M, 0.0, behind, oncoming)
     assert not ask(stop, 2.0, AT_LINE_M, 0.0, behind, oncoming)
 
@@ -104,7 +110,7 @@ def test_an_actor_that_comes_from_behind_and_one_that_comes_towards_us_in_its_la
 def test_a_stream_of_cars_holds_one_for_long_but_not_for_ever() -> None:
     stop = sign()
     ask(stop, 0.0, AT_LINE_M, 0.0)
-    far = body_at(Kind.VEHICLE, 56.0, -34.0, velocity_mps=(0.0, 8.0), yaw_deg=90.0)  # 4 s away, whenever one looks
+    far = body_at(ActorKind.VEHICLE, 56.0, -34.0, velocity_mps=(0.0, 8.0), yaw_deg=90.0)  # 4 s away, whenever one looks
     assert ask(stop, 30.0, AT_LINE_M, 0.0, far)
     assert not ask(stop, 60.0, AT_LINE_M, 0.0, far)
 
@@ -134,7 +140,9 @@ def yield_sign() -> YieldSign:
 
 
 def ask_yield_sign(yield_sign: YieldSign, time_s: float, front_s_m: float, speed_mps: float, *others: Other) -> bool:
-    return yield_sign.step(Ego(time_s, front_s_m - FRONT_M, 0.0, 0.0, speed_mps), front_s_m, others) is not None
+    return (
+        yield_sign.step(DrivenVehicle(time_s, front_s_m - FRONT_M, 0.0, 0.0, speed_mps), front_s_m, others) is not None
+    )
 
 
 def circulating(angle_deg: float) -> Other:
@@ -143,7 +151,7 @@ def circulating(angle_deg: float) -> Other:
     at = (57.0 + 7.0 * math.cos(angle), 7.0 * math.sin(angle))
     velocity = (4.0 * math.sin(angle), -4.0 * math.cos(angle))
     yaw_deg = math.degrees(math.atan2(velocity[1], velocity[0]))
-    return body_at(Kind.VEHICLE, *at, velocity_mps=velocity, yaw_deg=yaw_deg)._replace(yaw_rate_radps=-4.0 / 7.0)
+    return body_at(ActorKind.VEHICLE, *at, velocity_mps=velocity, yaw_deg=yaw_deg)._replace(yaw_rate_radps=-4.0 / 7.0)
 
 
 def test_an_empty_roundabout_is_entered_without_stopping() -> None:
@@ -156,7 +164,7 @@ def test_an_actor_that_circulates_towards_the_entry_goes_first() -> None:
 
 
 def test_a_car_that_waits_at_its_own_entry_does_not_hold_one_up() -> None:
-    assert not ask_yield_sign(yield_sign(), 0.0, 45.0, 2.5, body_at(Kind.VEHICLE, 57.0, -14.0, yaw_deg=90.0))
+    assert not ask_yield_sign(yield_sign(), 0.0, 45.0, 2.5, body_at(ActorKind.VEHICLE, 57.0, -14.0, yaw_deg=90.0))
 
 
 def test_after_giving_way_the_gap_has_to_last_a_moment() -> None:
@@ -183,7 +191,9 @@ def test_driven_it_waits_at_the_line_while_cars_circulate_and_then_enters() -> N
 
     def others(time_s: float) -> list[Other]:
         return [
-            body_at(Kind.VEHICLE, 56.0, -60.0 + 6.0 * (time_s - k), velocity_mps=(0.0, 6.0), yaw_deg=90.0, number=k)
+            body_at(
+                ActorKind.VEHICLE, 56.0, -60.0 + 6.0 * (time_s - k), velocity_mps=(0.0, 6.0), yaw_deg=90.0, number=k
+            )
             for k in (2, 5, 8)
         ]
 

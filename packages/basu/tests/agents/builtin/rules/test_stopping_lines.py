@@ -3,22 +3,22 @@
 import numpy as np
 import pytest
 
-from basu.agents.builtin.rules.stopping_lines import DWELL_S, LOOK_M, Light, Phase, ServiceStop, TrafficLight
-from basu.agents.builtin.scene import Ego
+from basu.agents.builtin.rules.stopping_lines import DWELL_S, LOOK_M, Light, ServicePhase, ServiceStop, TrafficLight
+from basu.agents.builtin.scene import DrivenVehicle
 from basu.metrics.path_following import SERVED_M, serves
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, Plant, drive, line, make_driver, make_route
 
 
-def ego(time_s: float, speed_mps: float) -> Ego:
-    return Ego(time_s, 0.0, 0.0, 0.0, speed_mps)
+def ego(time_s: float, speed_mps: float) -> DrivenVehicle:
+    return DrivenVehicle(time_s, 0.0, 0.0, 0.0, speed_mps)
 
 
 def test_it_dwells_and_then_leaves_once_and_for_all() -> None:
     stop = ServiceStop(50.0, "S1")
     assert stop.step(ego(0.0, 5.0), 30.0) is not None
     assert stop.step(ego(9.0, 0.0), 49.9) is not None
-    assert stop.phase is Phase.DWELLING
+    assert stop.phase is ServicePhase.DWELLING
     assert stop.step(ego(9.0 + DWELL_S - 0.1, 0.0), 49.9) is not None
     assert stop.step(ego(9.0 + DWELL_S, 0.0), 49.9) is None
     assert stop.step(ego(30.0, 0.0), 49.9) is None
@@ -27,7 +27,7 @@ def test_it_dwells_and_then_leaves_once_and_for_all() -> None:
 def test_standing_in_a_queue_before_the_stop_is_not_halting_at_it() -> None:
     stop = ServiceStop(50.0, "S1")
     assert all(stop.step(ego(float(t), 0.0), 45.0) is not None for t in range(30))
-    assert stop.phase is Phase.APPROACHING
+    assert stop.phase is ServicePhase.APPROACHING
 
 
 @pytest.mark.parametrize("left_m", [SERVED_M - 0.1, -SERVED_M + 0.1])
@@ -35,7 +35,7 @@ def test_what_the_metric_counts_as_served_is_served_for_the_driver(left_m: float
     stop = ServiceStop(50.0, "S1")
     assert serves(left_m, 0.0)
     stop.step(ego(0.0, 0.0), 50.0 - left_m)
-    assert stop.phase is Phase.DWELLING
+    assert stop.phase is ServicePhase.DWELLING
     assert not serves(SERVED_M + 0.1, 0.0)
 
 

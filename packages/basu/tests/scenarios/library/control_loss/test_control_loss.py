@@ -12,7 +12,7 @@ from basu.scenarios.cases import open_library
 from basu.scenarios.paths import Path
 from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls, Pose
-from basu.testing import Command, OfflineStage, Rehearsal, offline_place, rehearse, steady
+from basu.testing import OfflineStage, Rehearsal, StageCommand, offline_place, rehearse, steady
 
 Laid = Callable[..., Scenario]
 
@@ -117,4 +117,4 @@ def test_what_is_done_is_reported_in_the_tree(laid: Laid) -> None:
     played = rehearse(laid("control_loss_1"), steady(6.0))
     lost = played.tree.phases["conflict"].children[0]
     assert [node.name for node in lost.children[:2]] == ["controls jitter for 1.5 s", "ego passes place 2"]
-    assert isinstance(played.commands[0], Command)
+    assert isinstance(played.commands[0], StageCommand)

@@ -7,7 +7,7 @@ from linden_maps.models.solids import (
     BLACK,
     RUBBER,
     STEEL,
-    Look,
+    FaceLook,
     ball,
     box,
     lathe,
@@ -18,13 +18,13 @@ from linden_maps.models.solids import (
     wedge,
 )
 
-_LEAVES = Look(Material.LEAVES, (70, 112, 48))
-_WOOD = Look(Material.WOOD, (140, 100, 64))
-_STONE = Look(Material.CONCRETE, (172, 168, 158))
-_WATER = Look(Material.GLASS, (90, 130, 150))
-_WHITE = Look(Material.PLAIN, (232, 232, 228))
-_RED = Look(Material.PLAIN, (186, 40, 36))
-_BLUE = Look(Material.CLOTH, (50, 86, 150))
+_LEAVES = FaceLook(Material.LEAVES, (70, 112, 48))
+_WOOD = FaceLook(Material.WOOD, (140, 100, 64))
+_STONE = FaceLook(Material.CONCRETE, (172, 168, 158))
+_WATER = FaceLook(Material.GLASS, (90, 130, 150))
+_WHITE = FaceLook(Material.PLAIN, (232, 232, 228))
+_RED = FaceLook(Material.PLAIN, (186, 40, 36))
+_BLUE = FaceLook(Material.CLOTH, (50, 86, 150))
 
 
 def barbecue(length: float, width: float, height: float) -> list[Mesh]:
@@ -102,7 +102,7 @@ def gnome(length: float, width: float, height: float) -> list[Mesh]:
     x, y = 0.5 * length, 0.5 * width
     coat = lathe([0.0, 0.1 * height, 0.5 * height, 0.55 * height], [0.8, 1.0, 0.7, 0.4], 10, _BLUE)
     hat = lathe([0.66 * height, 0.7 * height, height], [0.62, 0.58, 0.03], 10, _RED)
-    face = ball((0.0, 0.0, 0.62 * height), (0.5 * x, 0.5 * y, 0.11 * height), Look(Material.SKIN, (224, 172, 140)))
+    face = ball((0.0, 0.0, 0.62 * height), (0.5 * x, 0.5 * y, 0.11 * height), FaceLook(Material.SKIN, (224, 172, 140)))
     beard = ball((0.3 * x, 0.0, 0.52 * height), (0.4 * x, 0.42 * y, 0.13 * height), _WHITE)
     return [stretched(coat, (x, y, 1.0)), stretched(hat, (x, y, 1.0)), face, beard]
 
@@ -273,7 +273,7 @@ def trampoline(length: float, width: float, height: float) -> list[Mesh]:
 
 def watering_can(length: float, width: float, height: float) -> list[Mesh]:
     """Return a watering can."""
-    green = Look(Material.PLAIN, (50, 120, 70))
+    green = FaceLook(Material.PLAIN, (50, 120, 70))
     body = stretched(lathe([0.0, 0.7 * height], [1.0, 0.9], 10, green), (0.5 * length, 0.28 * width, 1.0))
     spout = tube(
         [(0.0, 0.2 * width, 0.15 * height), (0.0, 0.42 * width, 0.6 * height), (0.0, 0.5 * width, 0.7 * height)],

@@ -3,13 +3,13 @@
 import math
 
 from linden.scenery.mesh import Material, Mesh
-from linden_maps.models.solids import Look, ball, box, lathe, rod, stretched, tube
+from linden_maps.models.solids import FaceLook, ball, box, lathe, rod, stretched, tube
 
-_BARK = Look(Material.BARK, (92, 72, 54))
-_LEAVES = Look(Material.LEAVES, (70, 112, 48))
-_DARK_LEAVES = Look(Material.LEAVES, (44, 82, 50))
-_POT = Look(Material.BRICK, (168, 92, 62))
-_EARTH = Look(Material.GRAVEL, (70, 52, 40))
+_BARK = FaceLook(Material.BARK, (92, 72, 54))
+_LEAVES = FaceLook(Material.LEAVES, (70, 112, 48))
+_DARK_LEAVES = FaceLook(Material.LEAVES, (44, 82, 50))
+_POT = FaceLook(Material.BRICK, (168, 92, 62))
+_EARTH = FaceLook(Material.GRAVEL, (70, 52, 40))
 
 
 def broad_tree(length: float, width: float, height: float) -> list[Mesh]:

@@ -9,7 +9,7 @@ from linden_maps.models.solids import (
     BLACK,
     GLASS,
     STEEL,
-    Look,
+    FaceLook,
     ball,
     both_sides,
     box,
@@ -25,12 +25,12 @@ from linden_maps.models.solids import (
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]
 
-_CARDBOARD = Look(Material.PLAIN, (170, 132, 88))
-_TAPE = Look(Material.PLAIN, (200, 176, 132))
-_HAY = Look(Material.GRASS, (196, 168, 88))
-_BOARD = Look(Material.WOOD, (120, 110, 100))
-_ORANGE = Look(Material.PLAIN, (220, 96, 28))
-_WHITE = Look(Material.SIGN_FACE, (232, 232, 226))
+_CARDBOARD = FaceLook(Material.PLAIN, (170, 132, 88))
+_TAPE = FaceLook(Material.PLAIN, (200, 176, 132))
+_HAY = FaceLook(Material.GRASS, (196, 168, 88))
+_BOARD = FaceLook(Material.WOOD, (120, 110, 100))
+_ORANGE = FaceLook(Material.PLAIN, (220, 96, 28))
+_WHITE = FaceLook(Material.SIGN_FACE, (232, 232, 226))
 
 
 def cube(length: float, width: float, height: float) -> list[Mesh]:
@@ -39,7 +39,7 @@ def cube(length: float, width: float, height: float) -> list[Mesh]:
         box(
             (-0.5 * length, -0.5 * width, 0.0),
             (0.5 * length, 0.5 * width, height),
-            Look(Material.PLAIN, (150, 150, 150)),
+            FaceLook(Material.PLAIN, (150, 150, 150)),
         )
     ]
 
@@ -91,7 +91,7 @@ def can(colour: Colour) -> Model:
     """Return the model of a drink's can."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        radius, paint = 0.25 * (length + width), Look(Material.METAL, colour)
+        radius, paint = 0.25 * (length + width), FaceLook(Material.METAL, colour)
         heights = [0.0, 0.06 * height, 0.94 * height, height]
         return [lathe(heights, [0.85 * radius, radius, radius, 0.8 * radius], 12, [STEEL, paint, STEEL])]
 
@@ -105,7 +105,7 @@ def helmet(colour: Colour) -> Model:
         shell = ball(
             (0.0, 0.0, 0.5 * height),
             (0.5 * length, 0.5 * width, 0.5 * height),
-            Look(Material.CAR_PAINT, colour),
+            FaceLook(Material.CAR_PAINT, colour),
             sides=12,
         )
         visor = ball((0.04 * length, 0.0, 0.5 * height), (0.48 * length, 0.42 * width, 0.22 * height), GLASS, sides=12)
@@ -131,7 +131,7 @@ def case(colour: Colour) -> Model:
             BLACK,
         )
         return [
-            box((-x, -y, 0.0), (x, y, 0.92 * height), Look(Material.CLOTH, colour)),
+            box((-x, -y, 0.0), (x, y, 0.92 * height), FaceLook(Material.CLOTH, colour)),
             box((-x - 0.002, -0.06 * width, 0.02), (x + 0.002, 0.06 * width, 0.9 * height), STEEL),
             handle,
         ]
@@ -143,7 +143,7 @@ def bag(colour: Colour, *, handles: bool) -> Model:
     """Return the model of a soft bag, with handles or tied up."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        look, full = Look(Material.CLOTH, colour), height * (0.7 if handles else 0.82)
+        look, full = FaceLook(Material.CLOTH, colour), height * (0.7 if handles else 0.82)
         heights = [0.0, 0.06 * full, 0.4 * full, 0.8 * full, full]
         unit = lathe(heights, [0.7, 0.95, 1.0, 0.85, 0.6 if handles else 0.18], 10, look)
         body = stretched(unit, (0.5 * length, 0.5 * width, 1.0))
@@ -163,7 +163,7 @@ def heap(colour: Colour) -> Model:
     """Return the model of a low heap of lumps and scraps."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        look, scrap = Look(Material.GRAVEL, colour), Look(Material.PLAIN, (90, 84, 78))
+        look, scrap = FaceLook(Material.GRAVEL, colour), FaceLook(Material.PLAIN, (90, 84, 78))
         unit = lathe([0.0, 0.35 * height, 0.8 * height], [1.0, 0.7, 0.25], 9, look)
         lumps = [stretched(unit, (0.5 * length, 0.5 * width, 1.0))]
         for n in range(5):
@@ -208,7 +208,7 @@ def trolley(colour: Colour) -> Model:
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
         x, y, top = 0.5 * length, 0.5 * width, 0.7 * height
-        body = box((-x, -y, 0.06), (x, 0.9 * y, top), Look(Material.CLOTH, colour))
+        body = box((-x, -y, 0.06), (x, 0.9 * y, top), FaceLook(Material.CLOTH, colour))
         ribs = [box((s * x - 0.02, -y, 0.1), (s * x + 0.02, y, 0.95 * top), BLACK) for s in (-0.5, 0.0, 0.5)]
         bars = both_sides(rod((0.5 * x, 0.8 * y, 0.9 * top), (0.5 * x, 0.8 * y, height), 0.01, STEEL, sides=4))
         grip = rod((0.5 * x, -0.85 * y, height - 0.012), (0.5 * x, 0.85 * y, height - 0.012), 0.015, BLACK)

@@ -8,7 +8,7 @@ from linden_maps.models.solids import (
     BLACK,
     GLASS,
     STEEL,
-    Look,
+    FaceLook,
     box,
     lathe,
     moved,
@@ -22,11 +22,11 @@ from linden_maps.models.solids import (
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]
 
-_WHITE = Look(Material.SIGN_FACE, (234, 234, 228))
-_WOOD = Look(Material.WOOD, (126, 88, 56))
-_STONE = Look(Material.CONCRETE, (160, 158, 152))
-_IRON = Look(Material.METAL, (58, 60, 62))
-_SCREEN = Look(Material.GLASS, (60, 90, 120))
+_WHITE = FaceLook(Material.SIGN_FACE, (234, 234, 228))
+_WOOD = FaceLook(Material.WOOD, (126, 88, 56))
+_STONE = FaceLook(Material.CONCRETE, (160, 158, 152))
+_IRON = FaceLook(Material.METAL, (58, 60, 62))
+_SCREEN = FaceLook(Material.GLASS, (60, 90, 120))
 
 
 def bollard(length: float, width: float, height: float) -> list[Mesh]:
@@ -74,8 +74,8 @@ def wheeled_bin(colour: Colour) -> Model:
     """Return the model of a household bin on two wheels with a lid."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        x, y, look = 0.5 * length, 0.5 * width, Look(Material.PLAIN, colour)
-        lid = box((-x, -y, 0.9 * height), (x, y, height), Look(Material.PLAIN, (30, 34, 32)))
+        x, y, look = 0.5 * length, 0.5 * width, FaceLook(Material.PLAIN, colour)
+        lid = box((-x, -y, 0.9 * height), (x, y, height), FaceLook(Material.PLAIN, (30, 34, 32)))
         body = wedge((-0.72 * x, -0.9 * y, 0.06), (0.8 * x, 0.9 * y, 0.9 * height), look, top_x=(-0.95 * x, 0.95 * x))
         wheels = [moved(hoop(0.08, 0.025, BLACK), (-0.8 * x, s * 0.7 * y, 0.105)) for s in (-1.0, 1.0)]
         return [lid, body, *wheels]
@@ -86,7 +86,7 @@ def wheeled_bin(colour: Colour) -> Model:
 def litter_bin(length: float, width: float, height: float) -> list[Mesh]:
     """Return a round bin with a dark mouth."""
     share, radii = (0.0, 0.04, 0.72, 0.74, 0.84, 0.86, 0.96, 1.0), (0.9, 0.92, 1.0, 0.86, 0.86, 1.0, 0.9, 0.4)
-    body = Look(Material.METAL, (70, 84, 78))
+    body = FaceLook(Material.METAL, (70, 84, 78))
     looks = [_IRON, body, body, BLACK, body, body, _IRON]
     unit = lathe([height * s for s in share], list(radii), 14, looks)
     return [stretched(unit, (0.5 * length, 0.5 * width, 1.0))]
@@ -96,8 +96,8 @@ def container(colour: Colour) -> Model:
     """Return the model of a large container with a sloping lid."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        x, y, look = 0.5 * length, 0.5 * width, Look(Material.METAL, colour)
-        lid = Look(Material.PLAIN, (46, 48, 50))
+        x, y, look = 0.5 * length, 0.5 * width, FaceLook(Material.METAL, colour)
+        lid = FaceLook(Material.PLAIN, (46, 48, 50))
         ribs = [box((s * x - 0.03, -y, 0.1), (s * x + 0.03, y, 0.75 * height), look) for s in (-0.6, 0.0, 0.6)]
         feet = [
             moved(lathe([0.0, 0.1], [0.06, 0.06], 8, BLACK), (s * 0.85 * x, t * 0.8 * y, 0.0))
@@ -121,7 +121,7 @@ def machine(colour: Colour) -> Model:
     """Return the model of a cabinet with a lit screen: vending machine, cash dispenser."""
 
     def make(length: float, width: float, height: float) -> list[Mesh]:
-        x, y, look = 0.5 * length, 0.5 * width, Look(Material.METAL, colour)
+        x, y, look = 0.5 * length, 0.5 * width, FaceLook(Material.METAL, colour)
         return [
             box((-x, -y, 0.0), (0.97 * x, y, height), look),
             box((0.9 * x, -0.8 * y, 0.45 * height), (x, 0.45 * y, 0.9 * height), _SCREEN),
@@ -135,7 +135,7 @@ def machine(colour: Colour) -> Model:
 def mailbox(length: float, width: float, height: float) -> list[Mesh]:
     """Return a letter box with a round top on four legs."""
     x, y, low = 0.5 * length, 0.5 * width, 0.18 * height
-    blue = Look(Material.METAL, (28, 62, 128))
+    blue = FaceLook(Material.METAL, (28, 62, 128))
     arch = [
         (-y, low),
         (y, low),
@@ -192,8 +192,8 @@ def shelter(*, along_x: bool) -> Model:
 def kiosk(length: float, width: float, height: float) -> list[Mesh]:
     """Return a kiosk with a hatch and an awning."""
     x, y, wall = 0.5 * length, 0.5 * width, 0.72 * height
-    green = Look(Material.SIDING, (36, 84, 66))
-    roof = lathe([wall, wall + 0.1 * height, height], [1.0, 0.75, 0.06], 8, Look(Material.METAL, (52, 60, 58)))
+    green = FaceLook(Material.SIDING, (36, 84, 66))
+    roof = lathe([wall, wall + 0.1 * height, height], [1.0, 0.75, 0.06], 8, FaceLook(Material.METAL, (52, 60, 58)))
     return [
         box((-0.85 * x, -0.85 * y, 0.0), (0.85 * x, 0.85 * y, wall), green),
         box((0.8 * x, -0.65 * y, 0.42 * wall), (0.88 * x, 0.65 * y, 0.85 * wall), GLASS),
@@ -205,7 +205,7 @@ def kiosk(length: float, width: float, height: float) -> list[Mesh]:
 def food_cart(length: float, width: float, height: float) -> list[Mesh]:
     """Return a food cart: a counter on wheels under a striped roof."""
     x, y = 0.5 * length, 0.5 * width
-    made = [box((-0.6 * x, -0.8 * y, 0.35), (0.6 * x, 0.8 * y, 0.36 * height), Look(Material.PLAIN, (200, 60, 50)))]
+    made = [box((-0.6 * x, -0.8 * y, 0.35), (0.6 * x, 0.8 * y, 0.36 * height), FaceLook(Material.PLAIN, (200, 60, 50)))]
     made.append(box((-0.7 * x, -0.85 * y, 0.36 * height), (0.75 * x, 0.85 * y, 0.39 * height), STEEL))
     made += [
         rod((s * 0.55 * x, t * 0.75 * y, 0.38 * height), (s * 0.55 * x, t * 0.75 * y, 0.8 * height), 0.04, STEEL)
@@ -215,7 +215,7 @@ def food_cart(length: float, width: float, height: float) -> list[Mesh]:
     stripes = 10
     for n in range(stripes):
         start = -y + n * width / stripes
-        look = _WHITE if n % 2 else Look(Material.CLOTH, (200, 50, 40))
+        look = _WHITE if n % 2 else FaceLook(Material.CLOTH, (200, 50, 40))
         made.append(
             prism(
                 [(-x, 0.78 * height), (x, 0.78 * height), (0.25 * x, height), (-0.25 * x, height)],

@@ -4,19 +4,19 @@ from collections.abc import Callable
 
 from linden.scenery.mesh import LampOf, Material, Mesh
 from linden_maps.models.fittings import hoop
-from linden_maps.models.solids import BLACK, RUBBER, STEEL, Look, ball, box, lathe, moved, prism, rod
+from linden_maps.models.solids import BLACK, RUBBER, STEEL, FaceLook, ball, box, lathe, moved, prism, rod
 
 Model = Callable[[float, float, float], list[Mesh]]
 Colour = tuple[int, int, int]
 
-_ORANGE = Look(Material.PLAIN, (226, 92, 22))
-_WHITE = Look(Material.SIGN_FACE, (234, 234, 228))
-_RED = Look(Material.SIGN_FACE, (190, 24, 28))
-_YELLOW = Look(Material.SIGN_FACE, (240, 180, 30))
-_GREEN = Look(Material.SIGN_FACE, (20, 100, 70))
-_WOOD = Look(Material.WOOD, (126, 88, 56))
-_STONE = Look(Material.CONCRETE, (160, 158, 152))
-_IRON = Look(Material.METAL, (58, 60, 62))
+_ORANGE = FaceLook(Material.PLAIN, (226, 92, 22))
+_WHITE = FaceLook(Material.SIGN_FACE, (234, 234, 228))
+_RED = FaceLook(Material.SIGN_FACE, (190, 24, 28))
+_YELLOW = FaceLook(Material.SIGN_FACE, (240, 180, 30))
+_GREEN = FaceLook(Material.SIGN_FACE, (20, 100, 70))
+_WOOD = FaceLook(Material.WOOD, (126, 88, 56))
+_STONE = FaceLook(Material.CONCRETE, (160, 158, 152))
+_IRON = FaceLook(Material.METAL, (58, 60, 62))
 
 
 def cone(length: float, width: float, height: float) -> list[Mesh]:
@@ -51,10 +51,12 @@ def advertisement(length: float, width: float, height: float) -> list[Mesh]:
     poster = box(
         (-0.88 * x, -0.66 * y, 0.28 * height),
         (0.88 * x, 0.66 * y, 0.94 * height),
-        Look(Material.SIGN_FACE, (196, 202, 190)),
+        FaceLook(Material.SIGN_FACE, (196, 202, 190)),
     )
     picture = box(
-        (-0.7 * x, -0.7 * y, 0.45 * height), (0.7 * x, 0.7 * y, 0.85 * height), Look(Material.SIGN_FACE, (60, 120, 150))
+        (-0.7 * x, -0.7 * y, 0.45 * height),
+        (0.7 * x, 0.7 * y, 0.85 * height),
+        FaceLook(Material.SIGN_FACE, (60, 120, 150)),
     )
     foot = [
         box((-0.5 * x, -y, 0.0), (0.5 * x, y, 0.04 * height), _STONE),
@@ -75,7 +77,7 @@ def map_table(length: float, width: float, height: float) -> list[Mesh]:
         [(-0.9 * y, 0.96 * height), (0.9 * y, 0.7 * height), (0.9 * y, 0.76 * height), (-0.9 * y, 1.0 * height)],
         -0.9 * x,
         0.9 * x,
-        Look(Material.SIGN_FACE, (200, 208, 176)),
+        FaceLook(Material.SIGN_FACE, (200, 208, 176)),
         along=0,
     )
     return [*legs, board, paper]
@@ -116,7 +118,7 @@ def warning_sign(length: float, width: float, height: float) -> list[Mesh]:
 def arrow_board(length: float, width: float, height: float) -> list[Mesh]:
     """Return a trailer with a board of lamps in the shape of an arrow."""
     x, y = 0.5 * length, 0.5 * width
-    lamp = Look(Material.LAMP, (240, 190, 40), LampOf.BEACON)
+    lamp = FaceLook(Material.LAMP, (240, 190, 40), LampOf.BEACON)
     board = box((-x, -0.06, 0.52 * height), (x, 0.06, height), BLACK)
     dots = [(-0.8 + 0.2 * n, 0.76) for n in range(8)] + [(0.45, 0.86), (0.6, 0.81), (0.45, 0.66), (0.6, 0.71)]
     lamps = [ball((k * x, -0.06, z * height), (0.07, 0.03, 0.07), lamp, sides=6, bands=4) for k, z in dots]

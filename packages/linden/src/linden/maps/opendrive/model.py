@@ -30,7 +30,7 @@ class Cubic(NamedTuple):
     d: float = 0.0
 
 
-class Line(NamedTuple):
+class StraightLine(NamedTuple):
     """Straight on."""
 
 
@@ -66,7 +66,7 @@ class Geometry(NamedTuple):
     y_m: float
     heading_rad: float
     length_m: float
-    shape: Line | Arc | Spiral | ParamPoly3
+    shape: StraightLine | Arc | Spiral | ParamPoly3
 
 
 class RoadMark(NamedTuple):

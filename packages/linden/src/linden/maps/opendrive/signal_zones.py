@@ -31,7 +31,7 @@ class LanePlace(NamedTuple):
     s_m: float
 
 
-class _Approach(NamedTuple):
+class _LineApproach(NamedTuple):
     """Lanes of one road that reach the same line side by side: rows ``first`` to ``last`` of the places asked for."""
 
     signal: int
@@ -43,7 +43,7 @@ def trigger_boxes(
     tables: Tables, links: LaneLinks, world_from_signals: list[Transform], places: list[list[LanePlace]]
 ) -> list[tuple[BoundingBox, ...]]:
     """Return each signal's boxes, one an approach, local to its actor: x across the lanes where it stands square."""
-    approaches: list[_Approach] = []
+    approaches: list[_LineApproach] = []
     ordered: list[LanePlace] = []
     for signal, own in enumerate(places):
         groups: dict[tuple[int, int, bool, float], list[LanePlace]] = defaultdict(list)
@@ -52,7 +52,7 @@ def trigger_boxes(
             key = (int(row["road"]), int(row["section"]), _is_forward(tables, place.lane), round(place.s_m, 3))
             groups[key].append(place)
         for group in groups.values():
-            approaches.append(_Approach(signal, len(ordered), len(ordered) + len(group)))
+            approaches.append(_LineApproach(signal, len(ordered), len(ordered) + len(group)))
             ordered += group
     boxes: list[list[BoundingBox]] = [[] for _ in places]
     for signal, area in zip(
@@ -62,7 +62,7 @@ def trigger_boxes(
     return [tuple(own) for own in boxes]
 
 
-def _areas(tables: Tables, approaches: list[_Approach], places: list[LanePlace]) -> list[tuple[Transform, float]]:
+def _areas(tables: Tables, approaches: list[_LineApproach], places: list[LanePlace]) -> list[tuple[Transform, float]]:
     """Return the middle of each approach's box, turned along the road, and half its width across the lanes in m."""
     if not approaches:
         return []

@@ -35,7 +35,7 @@ _ADDED_HEAD = struct.Struct("<IB")
 _PHYSICS_HEAD = struct.Struct("<I5f?4f")
 
 
-class Packet(NamedTuple):
+class FilePacket(NamedTuple):
     """A packet as it lies in the file; ``offset`` is where its content begins."""
 
     id: int
@@ -46,7 +46,7 @@ class Packet(NamedTuple):
 class Cursor:
     """Reads one packet's content from front to back."""
 
-    def __init__(self, packet: Packet) -> None:
+    def __init__(self, packet: FilePacket) -> None:
         self._packet = packet
         self._at = 0
 
@@ -111,7 +111,7 @@ def name_of(packet_id: int) -> str:
         return f"packet {packet_id}"
 
 
-def decode(packet: Packet) -> tuple[PacketId, object] | None:
+def decode(packet: FilePacket) -> tuple[PacketId, object] | None:
     """Return what a packet holds, None where no release of CARLA has such a packet (it is skipped, as CARLA does).
 
     Raises:
@@ -123,7 +123,7 @@ def decode(packet: Packet) -> tuple[PacketId, object] | None:
     return kind, _content(kind, packet)
 
 
-def _content(kind: PacketId, packet: Packet) -> object:
+def _content(kind: PacketId, packet: FilePacket) -> object:
     if kind in layouts.RECORDS:
         return _records(packet, layouts.RECORDS[kind])
     cursor = Cursor(packet)
@@ -138,7 +138,7 @@ def _content(kind: PacketId, packet: Packet) -> object:
     return content
 
 
-def _records(packet: Packet, layout: "np.dtype[np.void]") -> Records:
+def _records(packet: FilePacket, layout: "np.dtype[np.void]") -> Records:
     cursor = Cursor(packet)
     (count,) = cursor.unpack(_COUNT)
     records = np.frombuffer(cursor.take(count * layout.itemsize), layout)
@@ -146,7 +146,7 @@ def _records(packet: Packet, layout: "np.dtype[np.void]") -> Records:
     return records
 
 
-def _undisputed(packet: Packet) -> PacketId:
+def _undisputed(packet: FilePacket) -> PacketId:
     """Return what packet 21, 22 or 23 holds; versions number doors, wheels and bikers in different orders.
 
     A door takes 6 bytes, a biker 12, a vehicle's wheels 8 and 9 more for each wheel: the size tells them apart. An

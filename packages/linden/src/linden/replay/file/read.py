@@ -19,7 +19,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from linden.replay.file import layouts
-from linden.replay.file.decode import DISPUTED_IDS, Cursor, Packet, decode, name_of
+from linden.replay.file.decode import DISPUTED_IDS, Cursor, FilePacket, decode, name_of
 from linden.replay.file.folder import open_at_once
 from linden.replay.file.layouts import PacketId
 from linden.replay.file.packets import CutShortError, Frame, Header, NoRecordingError, RecordingError
@@ -165,9 +165,9 @@ class Recording:
             raise self._cut_short(at)
         return packet_id, size
 
-    def _packet(self, at: int) -> Packet:
+    def _packet(self, at: int) -> FilePacket:
         packet_id, size = self._packet_head(at)
-        return Packet(packet_id, at + _PACKET_HEAD.size, self._file.read(size))
+        return FilePacket(packet_id, at + _PACKET_HEAD.size, self._file.read(size))
 
     def _cut_short(self, at: int) -> CutShortError:
         return CutShortError(
@@ -205,11 +205,11 @@ def _read_header(file: BinaryIO, path: Path) -> Header:
     return Header(version, date_unix_s, text())
 
 
-def _split(content: bytes, offset: int) -> Iterator[Packet]:
+def _split(content: bytes, offset: int) -> Iterator[FilePacket]:
     """Yield the packets of whole frames; ``offset`` is where ``content`` lies in the file."""
     at = 0
     while at < len(content):
         packet_id, size = _PACKET_HEAD.unpack_from(content, at)
         at += _PACKET_HEAD.size
-        yield Packet(packet_id, offset + at, content[at : at + size])
+        yield FilePacket(packet_id, offset + at, content[at : at + size])
         at += size

@@ -16,7 +16,7 @@ log = logging.getLogger("linden")
 _EVENTS = frozenset((PacketId.ADDED, PacketId.REMOVED, PacketId.PARENTS, PacketId.SCENE_LIGHTS, PacketId.DOORS))
 
 
-class Track(NamedTuple):
+class RecordingTrack(NamedTuple):
     """What a replay needs to know of a recording before it begins.
 
     Attributes:
@@ -33,7 +33,7 @@ class Track(NamedTuple):
     events: dict[int, Frame | RecordingError]
 
 
-def track_of(recording: Recording) -> Track:
+def track_of(recording: Recording) -> RecordingTrack:
     """Read through a recording; no other reader may use it meanwhile. It is closed where it is damaged.
 
     Raises:
@@ -46,7 +46,7 @@ def track_of(recording: Recording) -> Track:
         raise
 
 
-def _track_of(recording: Recording) -> Track:
+def _track_of(recording: Recording) -> RecordingTrack:
     places: list[FramePlace] = []
     try:
         for place in recording.places():
@@ -60,7 +60,7 @@ def _track_of(recording: Recording) -> Track:
     if not places:
         raise RecordingError(f"{recording.path} holds no whole frame, so there is nothing to replay", 0)
     found = ((at, _events_of(recording, place)) for at, place in enumerate(places))
-    return Track(recording, places, elapsed_s, {at: event for at, event in found if event is not None})
+    return RecordingTrack(recording, places, elapsed_s, {at: event for at, event in found if event is not None})
 
 
 def _events_of(recording: Recording, place: FramePlace) -> Frame | RecordingError | None:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.actors.actor_meshes import actor_meshes
 from linden.scenery.mesh import LampOf, Material, Mesh, join
-from linden.scenery.patches import WALLS, Frames, Look, boxes
+from linden.scenery.patches import WALLS, PatchFrames, PatchLook, boxes
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -22,7 +22,7 @@ _FURNITURE = {"bench": "static.prop.bench01", "bin": "static.prop.bin", "mailbox
 """The prop that stands for each kind of furniture."""
 
 
-def buildings(parts: Frames, half_m: F64, building: NDArray[np.intp], objects: I32) -> Mesh:
+def buildings(parts: PatchFrames, half_m: F64, building: NDArray[np.intp], objects: I32) -> Mesh:
     """Return buildings of upright boxes: walls with rows of windows, and flat roofs.
 
     ``parts`` stand at the feet of the boxes. ``half_m`` (N, 3) are their half sizes. ``building`` (N,) is the number of
@@ -30,16 +30,16 @@ def buildings(parts: Frames, half_m: F64, building: NDArray[np.intp], objects: I
     """
     centre = half_m * (0.0, 0.0, 1.0)
     colour = _WALLS[building % len(_WALLS)].astype(np.uint8)
-    walls = Look(Material.BRICK, SemanticTag.BUILDINGS, colour, objects)
-    roof = Look(Material.SHINGLES, SemanticTag.BUILDINGS, _ROOF, objects)
+    walls = PatchLook(Material.BRICK, SemanticTag.BUILDINGS, colour, objects)
+    roof = PatchLook(Material.SHINGLES, SemanticTag.BUILDINGS, _ROOF, objects)
     made = [boxes(parts, centre, half_m, walls, WALLS), boxes(parts, centre, half_m, roof, ("top",))]
     made += _windows(parts, half_m, objects)
     return join(made)
 
 
-def _windows(parts: Frames, half_m: F64, objects: I32) -> list[Mesh]:
+def _windows(parts: PatchFrames, half_m: F64, objects: I32) -> list[Mesh]:
     """Return a row of windows on each side of each storey."""
-    pane = Look(Material.GLASS, SemanticTag.BUILDINGS, _PANE, objects, LampOf.WINDOW)
+    pane = PatchLook(Material.GLASS, SemanticTag.BUILDINGS, _PANE, objects, LampOf.WINDOW)
     storeys = np.clip(2.0 * half_m[:, 2] // _STOREY_M, 1, _MOST_STOREYS).astype(int)
     made = []
     for storey in range(int(storeys.max(initial=0))):
@@ -55,7 +55,7 @@ def _windows(parts: Frames, half_m: F64, objects: I32) -> list[Mesh]:
     return made
 
 
-def furniture(kind: str, frames: Frames, half_m: F64, objects: I32) -> Mesh:
+def furniture(kind: str, frames: PatchFrames, half_m: F64, objects: I32) -> Mesh:
     """Return benches, bins or mailboxes that fill boxes of these half sizes (N, 3)."""
     models = actor_meshes()
     [part] = models.all_parts[_FURNITURE[kind], ""]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import LampOf, Material, Mesh, join
-from linden.scenery.patches import WALLS, Frames, Look, boxes, polygons
+from linden.scenery.patches import WALLS, PatchFrames, PatchLook, boxes, polygons
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -44,7 +44,7 @@ _CLOSE_M = 4.0
 _TAG = SemanticTag.BUILDINGS
 
 
-class Plan(NamedTuple):
+class HousePlan(NamedTuple):
     """Measures of N houses, m."""
 
     half_x: F64
@@ -56,9 +56,9 @@ class Plan(NamedTuple):
     draw: F64  # (N, 8)
     objects: I32
 
-    def of(self, rows: NDArray[np.intp]) -> "Plan":
+    def of(self, rows: NDArray[np.intp]) -> "HousePlan":
         """Return the measures of those of the houses."""
-        return Plan(
+        return HousePlan(
             self.half_x[rows],
             self.half_y[rows],
             self.height[rows],
@@ -70,20 +70,22 @@ class Plan(NamedTuple):
         )
 
 
-def plans(half_m: F64, draw: F64, objects: I32) -> Plan:
+def plans(half_m: F64, draw: F64, objects: I32) -> HousePlan:
     """Return what houses that fill boxes of these half sizes (N, 3) look like; ``draw`` (N, 8) in [0, 1)."""
     height = 2.0 * half_m[:, 2]
     storeys = np.where(height > 5.3, 2, 1)
     pitch = np.where(storeys == 2, 0.30 + 0.10 * draw[:, 0], 0.34 + 0.06 * draw[:, 0])
-    return Plan(half_m[:, 0], half_m[:, 1], height, height * (1.0 - pitch), storeys, draw[:, 1] < 0.62, draw, objects)
+    return HousePlan(
+        half_m[:, 0], half_m[:, 1], height, height * (1.0 - pitch), storeys, draw[:, 1] < 0.62, draw, objects
+    )
 
 
-def houses(frames: Frames, plan: Plan) -> Mesh:
+def houses(frames: PatchFrames, plan: HousePlan) -> Mesh:
     """Return houses."""
     return join([_walls(frames, plan), _roofs(frames, plan), _windows(frames, plan), _doors(frames, plan)])
 
 
-def _wall_look(plan: Plan) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
+def _wall_look(plan: HousePlan) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
     brick = plan.draw[:, 2] < _BRICK_SHARE
     siding = (plan.draw[:, 3] * len(_SIDING)).astype(int)
     for row in np.flatnonzero(siding[1:] == siding[:-1]) + 1:  # neighbours have different colours
@@ -92,26 +94,26 @@ def _wall_look(plan: Plan) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
     return brick, colour.astype(np.uint8)
 
 
-def _walls(frames: Frames, plan: Plan) -> Mesh:
+def _walls(frames: PatchFrames, plan: HousePlan) -> Mesh:
     """Return foundations, walls up to the eaves, and gables."""
     brick, colour = _wall_look(plan)
     parts = []
     zero = np.zeros(len(frames))
     middle = 0.5 * (_FOUNDATION_M + plan.eaves)
     for material, rows in ((Material.BRICK, np.flatnonzero(brick)), (Material.SIDING, np.flatnonzero(~brick))):
-        look = Look(material, _TAG, colour, plan.objects).of(rows)
+        look = PatchLook(material, _TAG, colour, plan.objects).of(rows)
         centre = np.column_stack([zero, zero, middle])[rows]
         half = np.column_stack([plan.half_x, plan.half_y, middle - _FOUNDATION_M])[rows]
         parts.append(boxes(frames.of(rows), centre, half, look, WALLS))
         parts.append(_gables(frames.of(rows), plan.of(rows), look))
     deep = np.column_stack([zero, zero, np.full(len(frames), 0.0)])
     half = np.column_stack([plan.half_x + 0.01, plan.half_y + 0.01, np.full(len(frames), _FOUNDATION_M)])
-    stone = Look(Material.CONCRETE, _TAG, _STONE, plan.objects)
+    stone = PatchLook(Material.CONCRETE, _TAG, _STONE, plan.objects)
     parts.append(boxes(frames, deep, half, stone, WALLS))
     return join(parts)
 
 
-def _gables(frames: Frames, plan: Plan, look: Look) -> Mesh:
+def _gables(frames: PatchFrames, plan: HousePlan, look: PatchLook) -> Mesh:
     """Return the triangles under the ridge at both of its ends."""
     along, across = _sides(plan)
     zero = np.zeros(len(frames))
@@ -127,7 +129,7 @@ def _gables(frames: Frames, plan: Plan, look: Look) -> Mesh:
     return join(parts)
 
 
-def _sides(plan: Plan) -> tuple[F64, F64]:
+def _sides(plan: HousePlan) -> tuple[F64, F64]:
     """Return half the length along the ridge and half the length across it."""
     return (
         np.where(plan.gable_ahead, plan.half_x, plan.half_y),
@@ -135,22 +137,22 @@ def _sides(plan: Plan) -> tuple[F64, F64]:
     )
 
 
-def _point(plan: Plan, along: F64, across: F64, up: F64) -> F64:
+def _point(plan: HousePlan, along: F64, across: F64, up: F64) -> F64:
     """Return points (N, 3) of the houses' frames, given along and across their ridges."""
     x = np.where(plan.gable_ahead, along, across)
     y = np.where(plan.gable_ahead, across, along)
     return np.column_stack([x, y, up])
 
 
-def _roofs(frames: Frames, plan: Plan) -> Mesh:
+def _roofs(frames: PatchFrames, plan: HousePlan) -> Mesh:
     """Return two slopes with eaves that stand out, their undersides, and a chimney."""
     along, across = _sides(plan)
     slope = (plan.height - plan.eaves) / across
     out, low = across + _OVERHANG_M, plan.eaves - _OVERHANG_M * slope
     length = along + _OVERHANG_M
     colour = _ROOFS[(plan.draw[:, 4] * len(_ROOFS)).astype(int)].astype(np.uint8)
-    look = Look(Material.SHINGLES, _TAG, colour, plan.objects)
-    under = Look(Material.WOOD, _TAG, _TRIM, plan.objects)
+    look = PatchLook(Material.SHINGLES, _TAG, colour, plan.objects)
+    under = PatchLook(Material.WOOD, _TAG, _TRIM, plan.objects)
     zero = np.zeros(len(frames))
     parts = []
     for side in (-1.0, 1.0):
@@ -169,12 +171,12 @@ def _roofs(frames: Frames, plan: Plan) -> Mesh:
     some = plan.of(with_chimney)
     along_c, across_c = _sides(some)
     at = _point(some, 0.5 * along_c, 0.25 * across_c, some.height - 0.1)
-    brick = Look(Material.BRICK, _TAG, _BRICKS[0].astype(np.uint8), some.objects)
+    brick = PatchLook(Material.BRICK, _TAG, _BRICKS[0].astype(np.uint8), some.objects)
     parts.append(boxes(frames.of(with_chimney), at, (0.32, 0.32, 0.75), brick))
     return join(parts)
 
 
-def _windows(frames: Frames, plan: Plan) -> Mesh:
+def _windows(frames: PatchFrames, plan: HousePlan) -> Mesh:
     """Return windows: two a storey on each side, the door in place of one, and one more in gables to the street.
 
     Where the next house stands close by there is one, and frames are hidden there and behind.
@@ -205,7 +207,7 @@ def _windows(frames: Frames, plan: Plan) -> Mesh:
     return join(parts)
 
 
-def _neighbours(frames: Frames, plan: Plan) -> dict[str, NDArray[np.bool_]]:
+def _neighbours(frames: PatchFrames, plan: HousePlan) -> dict[str, NDArray[np.bool_]]:
     """Return for the left and the right of each house whether the one before or after it in the row stands close."""
     close: dict[str, NDArray[np.bool_]] = {side: np.zeros(len(frames), np.bool_) for side in ("left", "right")}
     for step in (-1, 1):
@@ -223,21 +225,26 @@ _FACING = {"front": (-1.0, 0.0), "back": (1.0, 0.0), "left": (0.0, -1.0), "right
 
 
 def _panes(
-    frames: Frames, plan: Plan, side: str, run: F64, upright: tuple[F64, F64], framed: NDArray[np.bool_]
+    frames: PatchFrames, plan: HousePlan, side: str, run: F64, upright: tuple[F64, F64], framed: NDArray[np.bool_]
 ) -> Mesh:
     """Return one window of each house, a pane before its frame; ``upright`` is sill and height."""
     sill, tall = upright
     fits = np.flatnonzero(tall > 0.5)
-    pane = Look(Material.GLASS, _TAG, _PANE, plan.objects, LampOf.WINDOW).of(fits)
+    pane = PatchLook(Material.GLASS, _TAG, _PANE, plan.objects, LampOf.WINDOW).of(fits)
     parts = [_on(frames, plan, side, fits, (run, sill, sill + tall, 0.48, 0.035), pane)]
     fits = np.flatnonzero((tall > 0.5) & framed)
-    frame = Look(Material.WOOD, _TAG, _TRIM, plan.objects).of(fits)
+    frame = PatchLook(Material.WOOD, _TAG, _TRIM, plan.objects).of(fits)
     parts.append(_on(frames, plan, side, fits, (run, sill - 0.1, sill + tall + 0.1, 0.6, 0.025), frame))
     return join(parts)
 
 
 def _on(
-    frames: Frames, plan: Plan, side: str, rows: NDArray[np.intp], place: tuple[F64, F64, F64, float, float], look: Look
+    frames: PatchFrames,
+    plan: HousePlan,
+    side: str,
+    rows: NDArray[np.intp],
+    place: tuple[F64, F64, F64, float, float],
+    look: PatchLook,
 ) -> Mesh:
     """Return rectangles on a wall of those of the houses, ``place`` as :func:`_on_wall` takes it."""
     run, low, high, half, off = place
@@ -246,12 +253,14 @@ def _on(
     return polygons(corners, look, _out(some, side))
 
 
-def _out(frames: Frames, side: str) -> F64:
+def _out(frames: PatchFrames, side: str) -> F64:
     x, y = _FACING[side]
     return frames.turned(np.broadcast_to(np.array([x, y, 0.0]), (len(frames), 1, 3)))[:, 0]
 
 
-def _on_wall(frames: Frames, plan: Plan, side: str, run: F64, low: F64, high: F64, half: float, off: float) -> F64:
+def _on_wall(
+    frames: PatchFrames, plan: HousePlan, side: str, run: F64, low: F64, high: F64, half: float, off: float
+) -> F64:
     """Return upright rectangles (N, 4, 3) on a wall, ``run`` from its middle, ``off`` in front of it."""
     x, y = _FACING[side]
     corners = []
@@ -262,7 +271,7 @@ def _on_wall(frames: Frames, plan: Plan, side: str, run: F64, low: F64, high: F6
     return frames.world(np.stack(corners, axis=1))
 
 
-def _doors(frames: Frames, plan: Plan) -> Mesh:
+def _doors(frames: PatchFrames, plan: HousePlan) -> Mesh:
     """Return front doors with their steps."""
     colour = _DOORS[(plan.draw[:, 6] * len(_DOORS)).astype(int)].astype(np.uint8)
     low, high = np.full(len(frames), _FOUNDATION_M), np.full(len(frames), _FOUNDATION_M + 2.05)
@@ -270,7 +279,7 @@ def _doors(frames: Frames, plan: Plan) -> Mesh:
     leaf = _on_wall(frames, plan, "front", 0.5 * plan.half_y, low, high, 0.46, 0.04)
     return join(
         [
-            polygons(frame, Look(Material.WOOD, _TAG, _TRIM, plan.objects), _out(frames, "front")),
-            polygons(leaf, Look(Material.WOOD, _TAG, colour, plan.objects), _out(frames, "front")),
+            polygons(frame, PatchLook(Material.WOOD, _TAG, _TRIM, plan.objects), _out(frames, "front")),
+            polygons(leaf, PatchLook(Material.WOOD, _TAG, colour, plan.objects), _out(frames, "front")),
         ]
     )

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import Frames, Look, polygons
+from linden.scenery.patches import PatchFrames, PatchLook, polygons
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -51,7 +51,7 @@ _INSET = 0.97  # of the body within the box; the mirrors reach its sides
 _ROOF_IN = 0.74  # half the width of the roof, in shares of the body's
 
 
-def parked_cars(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
+def parked_cars(frames: PatchFrames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     """Return cars in boxes of these half sizes (N, 3); ``draw`` (N, 8) gives their colours."""
     kind = np.where(half_m[:, 2] > 0.8, 1, np.where(half_m[:, 0] < 2.1, 2, 0))
     paint = _COLOURS[(draw[:, 0] * len(_COLOURS)).astype(int)].astype(np.uint8)
@@ -63,10 +63,10 @@ def parked_cars(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     return join(parts)
 
 
-def _cars(frames: Frames, half_m: F64, outline: _Outline, paint: NDArray[np.uint8], objects: I32) -> Mesh:
-    painted = Look(Material.CAR_PAINT, _TAG, paint, objects)
-    glass = Look(Material.GLASS, _TAG, _PANE, objects)
-    dark = Look(Material.RUBBER, _TAG, _TYRE, objects)
+def _cars(frames: PatchFrames, half_m: F64, outline: _Outline, paint: NDArray[np.uint8], objects: I32) -> Mesh:
+    painted = PatchLook(Material.CAR_PAINT, _TAG, paint, objects)
+    glass = PatchLook(Material.GLASS, _TAG, _PANE, objects)
+    dark = PatchLook(Material.RUBBER, _TAG, _TYRE, objects)
     put = _Put(frames, half_m)
     parts = []
     lower = [(-0.98, _BELLY), *outline.lower, (0.98, _BELLY)]
@@ -102,7 +102,7 @@ def _taper(x: float) -> float:
     return 1.0 - 0.12 * max(0.0, abs(x) - 0.7) / 0.3
 
 
-def _cabin(put: "_Put", outline: _Outline, painted: Look, glass: Look) -> list[Mesh]:
+def _cabin(put: "_Put", outline: _Outline, painted: PatchLook, glass: PatchLook) -> list[Mesh]:
     """Return windows all round and the roof, with pillars in between."""
     (rx, rz), (ax, az), (bx, bz), (fx, fz) = outline.roof
     low, high = 0.93 * _INSET, _ROOF_IN * _INSET
@@ -135,7 +135,7 @@ def _lamps(put: "_Put", outline: _Outline, objects: I32) -> list[Mesh]:
     parts = []
     for side in (-1.0, 1.0):
         for x, z, colour, way in ((1.002, front, _HEAD, 1.0), (-1.002, rear, _TAIL, -1.0)):
-            look = Look(Material.GLASS, _TAG, colour, objects)
+            look = PatchLook(Material.GLASS, _TAG, colour, objects)
             y0, y1 = side * 0.42, side * 0.8
             parts.append(
                 put.patch(
@@ -145,7 +145,7 @@ def _lamps(put: "_Put", outline: _Outline, objects: I32) -> list[Mesh]:
     return parts
 
 
-def _wheel(frames: Frames, half_m: F64, x: float, side: float, objects: I32) -> Mesh:
+def _wheel(frames: PatchFrames, half_m: F64, x: float, side: float, objects: I32) -> Mesh:
     """Return one wheel of each car: a disc with its tread, half hidden in the body."""
     radius = 0.225 * 2.0 * half_m[:, 2]
     angles = np.arange(_WHEEL_SIDES) * (2.0 * np.pi / _WHEEL_SIDES)
@@ -153,7 +153,7 @@ def _wheel(frames: Frames, half_m: F64, x: float, side: float, objects: I32) -> 
     hub = np.stack([x * half_m[:, 0], side * (half_m[:, 1] - 0.02), radius], axis=1)
     outer = hub[:, None] + ring * radius[:, None, None]
     inner = outer - (0.0, side * 0.2, 0.0)
-    tyre, rim = Look(Material.RUBBER, _TAG, _TYRE, objects), Look(Material.METAL, _TAG, _RIM, objects)
+    tyre, rim = PatchLook(Material.RUBBER, _TAG, _TYRE, objects), PatchLook(Material.METAL, _TAG, _RIM, objects)
     out = frames.turned(np.broadcast_to(np.array([0.0, side, 0.0]), (len(frames), 1, 3)))[:, 0]
     parts = [polygons(frames.world(outer), tyre, out)]
     cap = hub[:, None] + 0.6 * ring[_CAP] * radius[:, None, None] + (0.0, side * 0.006, 0.0)
@@ -169,11 +169,13 @@ def _wheel(frames: Frames, half_m: F64, x: float, side: float, objects: I32) -> 
 class _Put:
     """Puts patches given in shares of the boxes into the world."""
 
-    def __init__(self, frames: Frames, half_m: F64) -> None:
+    def __init__(self, frames: PatchFrames, half_m: F64) -> None:
         self._frames = frames
         self._size = half_m * (1.0, 1.0, 2.0)
 
-    def patch(self, shares: list[tuple[float, float, float]], look: Look, towards: tuple[float, float, float]) -> Mesh:
+    def patch(
+        self, shares: list[tuple[float, float, float]], look: PatchLook, towards: tuple[float, float, float]
+    ) -> Mesh:
         """Return one patch of each car, looking ``towards`` (in the car's frame)."""
         corners = np.array(shares)[None] * self._size[:, None]
         way = self._frames.turned(np.broadcast_to(np.array(towards), (len(self._frames), 1, 3)))[:, 0]

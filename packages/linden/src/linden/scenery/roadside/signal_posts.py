@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import LampOf, Material, Mesh, join
-from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes, polygons, prisms
+from linden.scenery.patches import ALL_SIDES, PatchFrames, PatchLook, boxes, polygons, prisms
 from linden.scenery.scene.neighbourhood import LAMP_ARM_HALF_M, LAMP_HALF_WIDTH_M, LAMP_HEIGHT_M
 from linden.scenery.scene.posts import HEAD_HALF_M, PLATE_BOTTOM_M, PLATE_HALF_M, POST_HALF_WIDTH_M, POST_HEIGHT_M
 
@@ -104,13 +104,17 @@ _FASTEST = 1000.0  # what has more digits is no limit, and would not fit
 _PLATE_MIDDLE_M = PLATE_BOTTOM_M + PLATE_HALF_M[2]
 
 
-def traffic_lights(frames: Frames, poles: I32, heads: I32) -> Mesh:
+def traffic_lights(frames: PatchFrames, poles: I32, heads: I32) -> Mesh:
     """Return traffic lights: a pole and a housing with its lenses, each under a visor; objects by part (N,)."""
     middle = POST_HEIGHT_M + HEAD_HALF_M[2]
-    housing = Look(Material.METAL, SemanticTag.TRAFFIC_LIGHT, _BLACK, heads)
+    housing = PatchLook(Material.METAL, SemanticTag.TRAFFIC_LIGHT, _BLACK, heads)
     parts = [
         _upright(
-            frames, POST_HALF_WIDTH_M, 0.0, POST_HEIGHT_M, Look(Material.METAL, SemanticTag.POLES, _GALVANISED, poles)
+            frames,
+            POST_HALF_WIDTH_M,
+            0.0,
+            POST_HEIGHT_M,
+            PatchLook(Material.METAL, SemanticTag.POLES, _GALVANISED, poles),
         ),
         boxes(
             frames, (0.0, -0.03, middle), (HEAD_HALF_M[0], HEAD_HALF_M[1] - 0.05, HEAD_HALF_M[2]), housing, ALL_SIDES
@@ -118,7 +122,7 @@ def traffic_lights(frames: Frames, poles: I32, heads: I32) -> Mesh:
     ]
     face_y = HEAD_HALF_M[1] - 0.08
     for lamp, up, colour in _LENSES:
-        look = Look(Material.LAMP, SemanticTag.TRAFFIC_LIGHT, colour, heads, lamp)
+        look = PatchLook(Material.LAMP, SemanticTag.TRAFFIC_LIGHT, colour, heads, lamp)
         lens = _disc(_ROUND, _LENS_M) + np.array([0.0, face_y + 0.005, middle + up])
         parts.append(_facing(frames, lens, look))
         visor = _disc(_ROUND, _LENS_M + 0.012)[: _ROUND // 2 + 1] + np.array([0.0, face_y, middle + up])
@@ -128,7 +132,7 @@ def traffic_lights(frames: Frames, poles: I32, heads: I32) -> Mesh:
     return join(parts)
 
 
-def signs(frames: Frames, kinds: list[tuple[str, float | None]], poles: I32, plates: I32) -> Mesh:
+def signs(frames: PatchFrames, kinds: list[tuple[str, float | None]], poles: I32, plates: I32) -> Mesh:
     """Return signs; ``kinds`` (N) are their OpenDRIVE type and value. What has no face of its own is a plain plate."""
     parts = [
         _upright(
@@ -136,7 +140,7 @@ def signs(frames: Frames, kinds: list[tuple[str, float | None]], poles: I32, pla
             POST_HALF_WIDTH_M * 0.7,
             0.0,
             PLATE_BOTTOM_M + 2.0 * PLATE_HALF_M[2] - 0.1,
-            Look(Material.METAL, SemanticTag.POLES, _STEEL, poles),
+            PatchLook(Material.METAL, SemanticTag.POLES, _STEEL, poles),
         )
     ]
     for kind, value in dict.fromkeys(kinds):
@@ -145,7 +149,7 @@ def signs(frames: Frames, kinds: list[tuple[str, float | None]], poles: I32, pla
     return join(parts)
 
 
-def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh:
+def _plate(frames: PatchFrames, kind: str, value: float | None, objects: I32) -> Mesh:
     """Return the plates of one kind of sign."""
     half = PLATE_HALF_M[0]
     if kind == STOP_SIGN_TYPE:
@@ -164,7 +168,7 @@ def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh
 
 
 def _layers(
-    frames: Frames,
+    frames: PatchFrames,
     objects: I32,
     sheets: list[tuple[F64, tuple[int, int, int]]],
     text: list[tuple[str, float, float, tuple[int, int, int]]],
@@ -172,16 +176,16 @@ def _layers(
     """Return sheets, each 2 mm in front of the one before, a back of bare metal, and what is written in front."""
     tag = SemanticTag.TRAFFIC_SIGNS
     at = np.array([0.0, 0.0, _PLATE_MIDDLE_M])
-    back = Look(Material.METAL, tag, _STEEL, objects)
+    back = PatchLook(Material.METAL, tag, _STEEL, objects)
     front = frames.turned(np.broadcast_to(np.array([0.0, 1.0, 0.0]), (len(frames), 1, 3)))[:, 0]
     depth = POST_HALF_WIDTH_M
     parts = [polygons(frames.world(sheets[0][0] + at + (0.0, depth - 0.004, 0.0)), back, -front)]
     for nth, (corners, colour) in enumerate(sheets):
-        look = Look(Material.SIGN_FACE, tag, colour, objects)
+        look = PatchLook(Material.SIGN_FACE, tag, colour, objects)
         parts.append(polygons(frames.world(corners + at + (0.0, depth + 0.002 * nth, 0.0)), look, front))
     for words, tall, up, colour in text:
         strokes = letters(words, tall)  # (K, 4, 2), read from the front: x to the reader's right
-        look = Look(Material.SIGN_FACE, tag, colour, objects)
+        look = PatchLook(Material.SIGN_FACE, tag, colour, objects)
         for stroke in strokes:
             # y points south: seen against it, at the face, x is on the right
             corners = np.column_stack(
@@ -191,16 +195,16 @@ def _layers(
     return join(parts)
 
 
-def street_lamps(frames: Frames, poles: I32, arms: I32) -> Mesh:
+def street_lamps(frames: PatchFrames, poles: I32, arms: I32) -> Mesh:
     """Return street lamps: a tapering pole, an arm towards the street (against x), a lantern that shines downwards."""
-    steel = Look(Material.METAL, SemanticTag.POLES, _GALVANISED, poles)
+    steel = PatchLook(Material.METAL, SemanticTag.POLES, _GALVANISED, poles)
     arm = steel._replace(object=arms)
     reach = 2.0 * LAMP_ARM_HALF_M[0]
     top = frames.world(np.broadcast_to(np.array([0.0, 0.0, LAMP_HEIGHT_M - 0.15]), (len(frames), 1, 3)))[:, 0]
     end = frames.world(np.broadcast_to(np.array([-reach + 0.5, 0.0, LAMP_HEIGHT_M]), (len(frames), 1, 3)))[:, 0]
     lantern = (-reach + 0.3, 0.0, LAMP_HEIGHT_M)
     glass = np.array([(x, y, 0.0) for x, y in ((-0.24, -0.1), (0.24, -0.1), (0.24, 0.1), (-0.24, 0.1))])
-    shining = Look(Material.LAMP, SemanticTag.POLES, (255, 236, 200), arms, LampOf.STREET)
+    shining = PatchLook(Material.LAMP, SemanticTag.POLES, (255, 236, 200), arms, LampOf.STREET)
     return join(
         [
             prisms(
@@ -213,7 +217,7 @@ def street_lamps(frames: Frames, poles: I32, arms: I32) -> Mesh:
     )
 
 
-def _upright(frames: Frames, radius_m: float, low_m: float, high_m: float, look: Look) -> Mesh:
+def _upright(frames: PatchFrames, radius_m: float, low_m: float, high_m: float, look: PatchLook) -> Mesh:
     up = np.array([0.0, 0.0, 1.0])
     return prisms(frames.base_m + (low_m - 0.2) * up, frames.base_m + high_m * up, (radius_m, radius_m), 6, look)
 
@@ -228,6 +232,6 @@ def _disc(sides: int, radius: float) -> F64:
     return _regular(sides, radius, 0.0)
 
 
-def _facing(frames: Frames, corners: F64, look: Look) -> Mesh:
+def _facing(frames: PatchFrames, corners: F64, look: PatchLook) -> Mesh:
     front = frames.turned(np.broadcast_to(np.array([0.0, 1.0, 0.0]), (len(frames), 1, 3)))[:, 0]
     return polygons(frames.world(corners), look, front)

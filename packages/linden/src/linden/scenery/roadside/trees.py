@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linden.maps.ground import Ground
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import FACE, NO_OBJECT, Material, Mesh, join
-from linden.scenery.patches import Frames, Look, prisms
+from linden.scenery.patches import PatchFrames, PatchLook, prisms
 from linden.scenery.scene.objects import Scene
 
 F64 = NDArray[np.float64]
@@ -35,7 +35,7 @@ _SKIRTS = ((0.10, 0.50, 0.26), (0.32, 0.76, 0.20), (0.58, 1.0, 0.13))
 class Planted(NamedTuple):
     """N trees: where they stand, half the thickness and the height of their trunks, what was drawn for each."""
 
-    frames: Frames
+    frames: PatchFrames
     trunk_half_m: F64
     trunk_height_m: F64
     draw: F64  # (N, 6) in [0, 1): decides what kind, how tall and how wide each is
@@ -68,7 +68,7 @@ def _trunks(planted: Planted) -> Mesh:
     base, half, draw = planted.frames.base_m, planted.trunk_half_m, planted.draw
     bark = _BARK[(draw[:, 1] * len(_BARK)).astype(int)]
     top = base + np.column_stack([0.3 * (draw[:, 2:4] - 0.5), planted.trunk_height_m + 0.2])
-    look = Look(Material.BARK, SemanticTag.VEGETATION, bark, planted.objects)
+    look = PatchLook(Material.BARK, SemanticTag.VEGETATION, bark, planted.objects)
     return prisms(base - (0.0, 0.0, _ROOT_M), top, (1.25 * half, 0.7 * half), 5, look, lid=False)
 
 
@@ -89,7 +89,7 @@ def _crowns(crown: _Crown, planted: Planted) -> Mesh:
     return _shaped(crown, planted.frames, size, planted.trunk_height_m - 1.2 + 0.8 * tall, draw, planted.objects)
 
 
-def clumps(frames: Frames, draw: F64) -> Mesh:
+def clumps(frames: PatchFrames, draw: F64) -> Mesh:
     """Return trees so close to each other, and so far away, that each clump is one round body down to the grass."""
     size = np.column_stack([8.0 + 5.0 * draw[:, 3], 8.0 + 5.0 * draw[:, 4], 7.0 + 4.0 * draw[:, 5]])
     nothing = np.full(len(frames), NO_OBJECT, np.int32)
@@ -102,12 +102,12 @@ def clumps(frames: Frames, draw: F64) -> Mesh:
     return join(parts)
 
 
-def _shaped(crown: _Crown, frames: Frames, size_m: F64, up_m: F64, draw: F64, objects: I32) -> Mesh:
+def _shaped(crown: _Crown, frames: PatchFrames, size_m: F64, up_m: F64, draw: F64, objects: I32) -> Mesh:
     """Return crowns of one shape, stretched to ``size_m`` (N, 3), their middles so far up."""
     count = len(frames)
     points = crown.corners[None] * size_m[:, None]
     points[..., 2] += up_m[:, None]
-    world = Frames(frames.base_m, frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
+    world = PatchFrames(frames.base_m, frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
     faces = np.zeros((count, len(crown.triangles)), FACE)
     faces["material"], faces["tag"] = Material.LEAVES, SemanticTag.VEGETATION
     faces["object"] = objects[:, None]
@@ -121,7 +121,7 @@ def _cones(planted: Planted) -> Mesh:
     """Return conifers: skirts of branches one above the other."""
     height = 6.5 + 6.0 * planted.draw[:, 4]
     needles = _NEEDLES[(planted.draw[:, 2] * len(_NEEDLES)).astype(int)]
-    look = Look(Material.LEAVES, SemanticTag.VEGETATION, needles, planted.objects)
+    look = PatchLook(Material.LEAVES, SemanticTag.VEGETATION, needles, planted.objects)
     up = np.array([0.0, 0.0, 1.0])
     ends = [(planted.frames.base_m + up * (share * height)[:, None] for share in skirt[:2]) for skirt in _SKIRTS]
     return join(
@@ -242,7 +242,7 @@ def woods(scene: Scene, ground: Ground) -> Mesh:
     places = (cells + low + shift[cells[:, 0], cells[:, 1]]) * _CELL_M
     height, _ = ground.surfaces_under(np.column_stack([places, np.full(len(places), _HIGH_M)]))
     drawn = rng.random((len(places), 8))
-    return clumps(Frames(np.column_stack([places, height]), 6.0 * drawn[:, 7]), drawn)
+    return clumps(PatchFrames(np.column_stack([places, height]), 6.0 * drawn[:, 7]), drawn)
 
 
 def _steps_away(taken: Flags) -> NDArray[np.int64]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes, prisms
+from linden.scenery.patches import ALL_SIDES, PatchFrames, PatchLook, boxes, prisms
 from linden.scenery.scene.utility_poles import PANEL_HALF_M, POLE_HALF_M, POLE_HEIGHT_M, SHELTER_HALF_M
 
 F64 = NDArray[np.float64]
@@ -23,14 +23,14 @@ _PIECES = 2
 _WIRE_HALF_M = 0.012
 
 
-def utility_poles(frames: Frames, objects: I32) -> Mesh:
+def utility_poles(frames: PatchFrames, objects: I32) -> Mesh:
     """Return wooden poles with arms along x, transformers on some, and wires from each to the next if that is near."""
-    wood = Look(Material.WOOD, SemanticTag.POLES, _WOOD, objects)
+    wood = PatchLook(Material.WOOD, SemanticTag.POLES, _WOOD, objects)
     up = np.array([0.0, 0.0, 1.0])
     top = frames.base_m + POLE_HEIGHT_M * up
     third = np.flatnonzero(np.arange(len(frames)) % 3 == 0)
     can = frames.of(third).world(np.broadcast_to(np.array([0.0, 0.4, POLE_HEIGHT_M - 2.0]), (len(third), 1, 3)))[:, 0]
-    steel = Look(Material.METAL, SemanticTag.POLES, _STEEL, objects).of(third)
+    steel = PatchLook(Material.METAL, SemanticTag.POLES, _STEEL, objects).of(third)
     return join(
         [
             prisms(frames.base_m - 0.4 * up, top, (POLE_HALF_M, 0.7 * POLE_HALF_M), 6, wood, lid=False),
@@ -41,11 +41,11 @@ def utility_poles(frames: Frames, objects: I32) -> Mesh:
     )
 
 
-def _wires(frames: Frames) -> Mesh:
+def _wires(frames: PatchFrames) -> Mesh:
     """Return wires that sag, three-sided, in pieces."""
     apart = np.hypot(*np.diff(frames.base_m[:, :2], axis=0).T) if len(frames) > 1 else np.empty(0)
     spans = np.flatnonzero((apart > 1.0) & (apart < _LONGEST_SPAN_M))
-    look = Look(Material.RUBBER, SemanticTag.POLES, _WIRE)
+    look = PatchLook(Material.RUBBER, SemanticTag.POLES, _WIRE)
     parts = []
     for along, below in _WIRES_M:
         place = np.broadcast_to(np.array([along, 0.0, POLE_HEIGHT_M + below]), (len(frames), 1, 3))
@@ -61,7 +61,7 @@ def _wires(frames: Frames) -> Mesh:
     return join(parts)
 
 
-def shelters(frames: Frames, first: I32) -> Mesh:
+def shelters(frames: PatchFrames, first: I32) -> Mesh:
     """Return shelters of four boxes each, counted from ``first``: back, two ends, roof; with a bench inside."""
     x, y, z = SHELTER_HALF_M
     tag = SemanticTag.STATIC
@@ -73,18 +73,20 @@ def shelters(frames: Frames, first: I32) -> Mesh:
     )
     for centre, half, nth in panels:
         objects = first + np.int32(nth)
-        glass, steel = Look(Material.GLASS, tag, _GLASS, objects), Look(Material.METAL, tag, _STEEL, objects)
+        glass, steel = PatchLook(Material.GLASS, tag, _GLASS, objects), PatchLook(Material.METAL, tag, _STEEL, objects)
         parts.append(boxes(frames, centre, (half[0], half[1], z - 0.3), glass, ALL_SIDES))
         parts.append(boxes(frames, (centre[0], centre[1], 0.15), (half[0] + 0.01, half[1] + 0.01, 0.15), steel))
         parts += [_posts(frames, centre, half, steel)]
-    roof = Look(Material.METAL, tag, _STEEL, first + np.int32(3))
+    roof = PatchLook(Material.METAL, tag, _STEEL, first + np.int32(3))
     parts.append(boxes(frames, (-0.15, 0.0, 2.0 * z), (x + 0.2, y + 0.1, 0.06), roof, ALL_SIDES))
-    bench = Look(Material.WOOD, tag, _BENCH, first)
+    bench = PatchLook(Material.WOOD, tag, _BENCH, first)
     parts.append(boxes(frames, (x - 0.3, 0.0, 0.45), (0.2, 0.8 * y, 0.03), bench, ALL_SIDES))
     return join(parts)
 
 
-def _posts(frames: Frames, centre: tuple[float, float, float], half: tuple[float, float, float], look: Look) -> Mesh:
+def _posts(
+    frames: PatchFrames, centre: tuple[float, float, float], half: tuple[float, float, float], look: PatchLook
+) -> Mesh:
     """Return two posts at the ends of a panel."""
     x, y, z = centre
     along = (half[0], 0.0) if half[0] > half[1] else (0.0, half[1])

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from linden.maps.ground import Ground
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import Frames, Look, boxes, polygons
+from linden.scenery.patches import PatchFrames, PatchLook, boxes, polygons
 from linden.scenery.scene.neighbourhood import with_house
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 from linden.scenery.scene.yard_layout import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, has_porch
 from linden.scenery.streets.road import CONCRETE
 from linden.structured import StructuredArray
@@ -35,18 +35,18 @@ _PATH_HALF_M = 0.55
 _HIGH_M = 1e6
 
 
-def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
+def porches(frames: PatchFrames, half_m: F64, objects: I32) -> Mesh:
     """Return porches that fill boxes of these half sizes: a floor, posts, a rail, a roof that slopes to the street."""
     tag = SemanticTag.BUILDINGS
-    trim = Look(Material.WOOD, tag, _TRIM, objects)
-    roof = Look(Material.SHINGLES, tag, _ROOF, objects)
+    trim = PatchLook(Material.WOOD, tag, _TRIM, objects)
+    roof = PatchLook(Material.SHINGLES, tag, _ROOF, objects)
     x, y, top = half_m[:, 0], half_m[:, 1], 2.0 * half_m[:, 2]
     zero = np.zeros(len(frames))
     floor = boxes(
         frames,
         np.zeros(3),
         np.column_stack([x, y, np.full(len(x), _FLOOR_M)]),
-        Look(Material.CONCRETE, tag, CONCRETE, objects),
+        PatchLook(Material.CONCRETE, tag, CONCRETE, objects),
         ("top", "left", "right", "behind"),
     )
     parts = [floor]
@@ -70,9 +70,11 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
     return join(parts)
 
 
-def hedges(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
+def hedges(frames: PatchFrames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     """Return clipped hedges, a little rounded on top."""
-    look = Look(Material.LEAVES, SemanticTag.VEGETATION, _HEDGE[(draw[:, 0] * 3).astype(int)].astype(np.uint8), objects)
+    look = PatchLook(
+        Material.LEAVES, SemanticTag.VEGETATION, _HEDGE[(draw[:, 0] * 3).astype(int)].astype(np.uint8), objects
+    )
     lower = boxes(frames, half_m * (0.0, 0.0, 0.8), half_m * (1.0, 1.0, 0.8), look, _WALLS)
     foot = np.array([(-1, -1, 1.6), (1, -1, 1.6), (1, 1, 1.6), (-1, 1, 1.6)], np.float64)
     crest = np.array([(-0.6, -0.94, 2.0), (0.6, -0.94, 2.0), (0.6, 0.94, 2.0), (-0.6, 0.94, 2.0)])
@@ -85,10 +87,10 @@ def hedges(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     return join(parts)
 
 
-def fences(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
+def fences(frames: PatchFrames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     """Return fences: high ones of boards, low ones of pickets with gaps between."""
     colour = _BOARDS[(draw[:, 0] * len(_BOARDS)).astype(int)].astype(np.uint8)
-    look = Look(Material.WOOD, SemanticTag.FENCES, colour, objects)
+    look = PatchLook(Material.WOOD, SemanticTag.FENCES, colour, objects)
     tall = half_m[:, 2] > 0.75
     parts = [_solid(frames.of(rows), half_m[rows], look.of(rows)) for rows in (np.flatnonzero(tall),)]
     low = np.flatnonzero(~tall)
@@ -96,11 +98,11 @@ def fences(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     return join(parts)
 
 
-def _solid(frames: Frames, half_m: F64, look: Look) -> Mesh:
+def _solid(frames: PatchFrames, half_m: F64, look: PatchLook) -> Mesh:
     return boxes(frames, half_m * (0.0, 0.0, 1.0), half_m, look)
 
 
-def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
+def _rails(frames: PatchFrames, half_m: F64, look: PatchLook) -> Mesh:
     """Return two rails between posts, without their hidden faces."""
     parts = []
     for sides, rows in (
@@ -124,11 +126,11 @@ def paved_yards(lots: StructuredArray, scene: Scene, ground: Ground, lawn: Groun
     under = _Under(ground, lawn)
     drive = drives(lots, scene)
     house = with_house(lots)
-    rows = np.searchsorted(scene.boxes["thing"], np.flatnonzero(scene.things["kind"] == Kind.HOUSE))
+    rows = np.searchsorted(scene.boxes["thing"], np.flatnonzero(scene.things["kind"] == ObjectKind.HOUSE))
     box = scene.boxes[rows]
     front = np.hypot(*(box["centre"][:, :2] - lots["front_m"][house]).T) - box["half"][:, 0]
     door = 0.5 * box["half"][:, 1]
-    frames = Frames(np.column_stack([lots["front_m"], np.zeros(len(lots))]), lots["yaw_rad"])
+    frames = PatchFrames(np.column_stack([lots["front_m"], np.zeros(len(lots))]), lots["yaw_rad"])
     plain = np.flatnonzero(~has_porch(lots)[house])
     return join(
         [
@@ -139,14 +141,14 @@ def paved_yards(lots: StructuredArray, scene: Scene, ground: Ground, lawn: Groun
     )
 
 
-def _steps(frames: Frames, wall: F64, door: F64, under: "_Under") -> Mesh:
+def _steps(frames: PatchFrames, wall: F64, door: F64, under: "_Under") -> Mesh:
     """Return a step before each door, ``wall`` away from the lot's front and ``door`` to the right of its middle."""
     middle = np.column_stack([wall - _STEP_HALF_M[0], door, np.zeros(len(wall))])
     foot = frames.world(middle[:, None])[:, 0]
     foot[:, 2] = _HIGH_M
     foot[:, 2] = under.heights(foot)
-    look = Look(Material.CONCRETE, SemanticTag.BUILDINGS, CONCRETE)
-    return boxes(Frames(foot, frames.yaw_rad), np.zeros(3), _STEP_HALF_M, look, ("top", "left", "right", "behind"))
+    look = PatchLook(Material.CONCRETE, SemanticTag.BUILDINGS, CONCRETE)
+    return boxes(PatchFrames(foot, frames.yaw_rad), np.zeros(3), _STEP_HALF_M, look, ("top", "left", "right", "behind"))
 
 
 class _Under(NamedTuple):
@@ -161,7 +163,7 @@ class _Under(NamedTuple):
         return np.where((on_lawn[1] >= 0) & (on_road[1] < 0), on_lawn[0], on_road[0])
 
 
-def _bays(frames: Frames, drive: Drive, under: _Under) -> list[Mesh]:
+def _bays(frames: PatchFrames, drive: Drive, under: _Under) -> list[Mesh]:
     zero = np.zeros(len(frames))
     aside = drive.side * DRIVE_ASIDE_M
     across = (aside - DRIVE_HALF_M, aside + DRIVE_HALF_M)
@@ -170,14 +172,14 @@ def _bays(frames: Frames, drive: Drive, under: _Under) -> list[Mesh]:
     return [apron, verge, *_lengths(frames, (zero, drive.length_m), across, under)]
 
 
-def _lengths(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> list[Mesh]:
+def _lengths(frames: PatchFrames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> list[Mesh]:
     """Return slabs in two lengths, so that they follow the ground."""
     shares = (0.0, 0.5, 1.0)
     places = [along[0] + share * (along[1] - along[0]) for share in shares]
     return [_slab(frames, pair, across, under) for pair in pairwise(places)]
 
 
-def _slab(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> Mesh:
+def _slab(frames: PatchFrames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> Mesh:
     corners = np.stack(
         [np.column_stack([along[i], across[j], np.zeros(len(frames))]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))],
         axis=1,
@@ -185,4 +187,4 @@ def _slab(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under
     world = frames.world(corners)
     world[..., 2] = _HIGH_M
     world[..., 2] = under.heights(world.reshape(-1, 3)).reshape(-1, 4) + _SLAB_M
-    return polygons(world, Look(Material.CONCRETE, SemanticTag.TERRAIN, CONCRETE), _UP)
+    return polygons(world, PatchLook(Material.CONCRETE, SemanticTag.TERRAIN, CONCRETE), _UP)

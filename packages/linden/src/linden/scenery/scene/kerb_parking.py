@@ -11,7 +11,7 @@ from linden.plane_bins import nearby
 from linden.protocol.values.enums import LaneType, SemanticTag
 from linden.scenery.scene.linden_survey import surveyed
 from linden.scenery.scene.neighbourhood import SEED, between, on_lots
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, things_with
 from linden.scenery.scene.yard_layout import CAR_HALF_M, Drive
 from linden.structured import StructuredArray
 
@@ -45,7 +45,7 @@ def kerbside_cars(lots: StructuredArray, drive: Drive, facts: MapFacts) -> Scene
     rows = np.flatnonzero(draw[:, 0] < SHARE)
     rows = rows[_in_lane(base[rows], lots["yaw_rad"][rows], half[rows], facts)]
     rows = rows[_clear(base[rows], facts)]
-    things = things_with(Kind.PARKED_CAR, base[rows], yaw[rows])
+    things = things_with(ObjectKind.PARKED_CAR, base[rows], yaw[rows])
     return assembled(things, boxes_on(things, half[rows] * (0.0, 0.0, 1.0), half[rows], SemanticTag.CAR))
 
 

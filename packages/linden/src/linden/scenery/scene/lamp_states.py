@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from linden.protocol.values.enums import LightGroup
 from linden.protocol.values.episode import LightState, WeatherParameters
 from linden.protocol.values.space import Vector3D
-from linden.scenery.scene.objects import Kind, Scene
+from linden.scenery.scene.objects import ObjectKind, Scene
 
 STREET_LAMP_LM = 5000.0
 """Of a street lamp with light-emitting diodes of about 45 W."""
@@ -30,7 +30,7 @@ class Lamps:
     """
 
     def __init__(self, scene: Scene) -> None:
-        bases = scene.things["base"][scene.things["kind"] == Kind.STREET_LAMP].tolist()
+        bases = scene.things["base"][scene.things["kind"] == ObjectKind.STREET_LAMP].tolist()
         self._lamps = {
             number: LightState(
                 number, Vector3D(*base), STREET_LAMP_LM, LightGroup.STREET, STREET_LAMP_COLOUR, active=False

@@ -10,14 +10,14 @@ from linden.maps.facts import MapFacts
 from linden.maps.records import STREET_NAME_SIGN, Standing
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import furnish, is_clear
-from linden.scenery.scene.objects import BOX, THING, Kind, Scene
+from linden.scenery.scene.objects import BOX, THING, ObjectKind, Scene
 
 KIND_OF = {
-    "building": Kind.BUILDING,
-    "bench": Kind.BENCH,
-    "bin": Kind.BIN,
-    "mailbox": Kind.MAILBOX,
-    STREET_NAME_SIGN: Kind.STREET_NAME_SIGN,
+    "building": ObjectKind.BUILDING,
+    "bench": ObjectKind.BENCH,
+    "bin": ObjectKind.BIN,
+    "mailbox": ObjectKind.MAILBOX,
+    STREET_NAME_SIGN: ObjectKind.STREET_NAME_SIGN,
 }
 _HOUSE_M = ((5.0, 16.0), (5.0, 16.0), (3.8, 9.5))  # least and most length, width and height
 
@@ -27,7 +27,7 @@ def plain(facts: MapFacts) -> Scene:
     drawn = furnish(facts.lots, facts.ground)
     if not any(thing.kind == "building" for thing in facts.standing):
         return drawn
-    return kept(drawn, (drawn.things["kind"] != Kind.HOUSE) & beside_buildings(drawn, facts.standing))
+    return kept(drawn, (drawn.things["kind"] != ObjectKind.HOUSE) & beside_buildings(drawn, facts.standing))
 
 
 def beside_buildings(scene: Scene, standing: Sequence[Standing]) -> NDArray[np.bool_]:
@@ -68,11 +68,11 @@ def _tag(kind: str, nth: int) -> SemanticTag:
     return SemanticTag.BUILDINGS if kind == "building" else SemanticTag.STATIC
 
 
-def _kind(thing: Standing) -> Kind:
+def _kind(thing: Standing) -> ObjectKind:
     """Return what a thing is: a building of a house's size is a house, with a gable."""
     only = thing.boxes[0]
     small = all(low <= 2.0 * size_m <= high for size_m, (low, high) in zip(only[3:6], _HOUSE_M, strict=True))
-    return Kind.HOUSE if thing.kind == "building" and len(thing.boxes) == 1 and small else KIND_OF[thing.kind]
+    return ObjectKind.HOUSE if thing.kind == "building" and len(thing.boxes) == 1 and small else KIND_OF[thing.kind]
 
 
 def _label(name: str) -> str:

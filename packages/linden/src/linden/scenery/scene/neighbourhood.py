@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linden.maps.ground import Ground
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M, LOTS, Standing, StandingBox
 from linden.protocol.values.enums import SemanticTag
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, join, things_with
 from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
@@ -110,7 +110,7 @@ def _houses(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
         draw[:, 3] < BUNGALOWS, between(BUNGALOW_HEIGHT_M, draw[:, 4]), between(HOUSE_HEIGHT_M, draw[:, 4])
     )
     inwards = between(SETBACK_M, draw[:, 5]) + 0.5 * depth
-    things = things_with(Kind.HOUSE, on_lots(lots, ground, inwards, np.zeros(len(lots))), lots["yaw_rad"])
+    things = things_with(ObjectKind.HOUSE, on_lots(lots, ground, inwards, np.zeros(len(lots))), lots["yaw_rad"])
     half = 0.5 * np.column_stack([depth, width, height])
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.BUILDINGS))
 
@@ -119,7 +119,9 @@ def _trees(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     planted = (draw[:, 6] < WITH_TREE) & ~is_taken(lots)
     lots, draw = lots[planted], draw[planted]
     aside = (draw[:, 7] - 0.5) * (LOT_WIDTH_M - 3.0)
-    things = things_with(Kind.TREE, on_lots(lots, ground, between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"])
+    things = things_with(
+        ObjectKind.TREE, on_lots(lots, ground, between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"]
+    )
     half = np.full((len(lots), 3), 0.5 * TRUNK_HEIGHT_M)
     half[:, :2] = between(TRUNK_HALF_M, draw[:, 1])[:, None]
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
@@ -129,7 +131,7 @@ def _lamps(lots: StructuredArray, ground: Ground) -> Scene:
     lots = lots[::LOTS_A_LAMP]
     aside = np.full(len(lots), 0.5 * LOT_WIDTH_M - 0.5)
     base = on_lots(lots, ground, np.full(len(lots), LAMP_DEPTH_M), aside)
-    things = things_with(Kind.STREET_LAMP, base, lots["yaw_rad"])
+    things = things_with(ObjectKind.STREET_LAMP, base, lots["yaw_rad"])
     half = np.array([LAMP_HALF_WIDTH_M, LAMP_HALF_WIDTH_M, 0.5 * LAMP_HEIGHT_M])
     arm = np.array([-LAMP_ARM_HALF_M[0], 0.0, LAMP_HEIGHT_M])
     return assembled(

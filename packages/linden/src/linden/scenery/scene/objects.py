@@ -18,7 +18,7 @@ from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vecto
 from linden.structured import StructuredArray
 
 
-class Kind(IntEnum):
+class ObjectKind(IntEnum):
     """What a thing is."""
 
     TRAFFIC_LIGHT = 0
@@ -41,45 +41,45 @@ class Kind(IntEnum):
 
 
 _NAMES = {
-    Kind.TRAFFIC_LIGHT: "TrafficLight",
-    Kind.TRAFFIC_SIGN: "TrafficSign",
-    Kind.HOUSE: "House",
-    Kind.TREE: "Tree",
-    Kind.STREET_LAMP: "StreetLamp",
-    Kind.WALL: "Wall",
-    Kind.PORCH: "Porch",
-    Kind.HEDGE: "Hedge",
-    Kind.FENCE: "Fence",
-    Kind.PARKED_CAR: "ParkedCar",
-    Kind.UTILITY_POLE: "UtilityPole",
-    Kind.SHELTER: "BusStop",
-    Kind.BUILDING: "Building",
-    Kind.BENCH: "Bench",
-    Kind.BIN: "Bin",
-    Kind.MAILBOX: "Mailbox",
-    Kind.STREET_NAME_SIGN: "StreetNameSign",
+    ObjectKind.TRAFFIC_LIGHT: "TrafficLight",
+    ObjectKind.TRAFFIC_SIGN: "TrafficSign",
+    ObjectKind.HOUSE: "House",
+    ObjectKind.TREE: "Tree",
+    ObjectKind.STREET_LAMP: "StreetLamp",
+    ObjectKind.WALL: "Wall",
+    ObjectKind.PORCH: "Porch",
+    ObjectKind.HEDGE: "Hedge",
+    ObjectKind.FENCE: "Fence",
+    ObjectKind.PARKED_CAR: "ParkedCar",
+    ObjectKind.UTILITY_POLE: "UtilityPole",
+    ObjectKind.SHELTER: "BusStop",
+    ObjectKind.BUILDING: "Building",
+    ObjectKind.BENCH: "Bench",
+    ObjectKind.BIN: "Bin",
+    ObjectKind.MAILBOX: "Mailbox",
+    ObjectKind.STREET_NAME_SIGN: "StreetNameSign",
 }
 _TAG_NAMES: dict[int, str] = {SemanticTag.POLES: "Poles", SemanticTag.TRAFFIC_LIGHT: "TrafficLight"}
 """How CARLA writes the tags of a traffic light's parts into their names (Tagger.cpp, GetTagAsString)."""
 
 LAYER = {
-    Kind.TRAFFIC_LIGHT: MapLayer.NONE,
-    Kind.TRAFFIC_SIGN: MapLayer.NONE,
-    Kind.HOUSE: MapLayer.BUILDINGS,
-    Kind.TREE: MapLayer.FOLIAGE,
-    Kind.STREET_LAMP: MapLayer.STREET_LIGHTS,
-    Kind.WALL: MapLayer.WALLS,
-    Kind.PORCH: MapLayer.BUILDINGS,
-    Kind.HEDGE: MapLayer.FOLIAGE,
-    Kind.FENCE: MapLayer.WALLS,
-    Kind.PARKED_CAR: MapLayer.PARKED_VEHICLES,
-    Kind.UTILITY_POLE: MapLayer.PROPS,
-    Kind.SHELTER: MapLayer.PROPS,
-    Kind.BUILDING: MapLayer.BUILDINGS,
-    Kind.BENCH: MapLayer.PROPS,
-    Kind.BIN: MapLayer.PROPS,
-    Kind.MAILBOX: MapLayer.PROPS,
-    Kind.STREET_NAME_SIGN: MapLayer.PROPS,
+    ObjectKind.TRAFFIC_LIGHT: MapLayer.NONE,
+    ObjectKind.TRAFFIC_SIGN: MapLayer.NONE,
+    ObjectKind.HOUSE: MapLayer.BUILDINGS,
+    ObjectKind.TREE: MapLayer.FOLIAGE,
+    ObjectKind.STREET_LAMP: MapLayer.STREET_LIGHTS,
+    ObjectKind.WALL: MapLayer.WALLS,
+    ObjectKind.PORCH: MapLayer.BUILDINGS,
+    ObjectKind.HEDGE: MapLayer.FOLIAGE,
+    ObjectKind.FENCE: MapLayer.WALLS,
+    ObjectKind.PARKED_CAR: MapLayer.PARKED_VEHICLES,
+    ObjectKind.UTILITY_POLE: MapLayer.PROPS,
+    ObjectKind.SHELTER: MapLayer.PROPS,
+    ObjectKind.BUILDING: MapLayer.BUILDINGS,
+    ObjectKind.BENCH: MapLayer.PROPS,
+    ObjectKind.BIN: MapLayer.PROPS,
+    ObjectKind.MAILBOX: MapLayer.PROPS,
+    ObjectKind.STREET_NAME_SIGN: MapLayer.PROPS,
 }
 """The layer that a thing is loaded and unloaded with."""
 
@@ -112,16 +112,16 @@ class Scene:
     @cached_property
     def layers(self) -> NDArray[np.int64]:
         """The layer of each box."""
-        of_kind = np.array([int(LAYER[kind]) for kind in Kind])
+        of_kind = np.array([int(LAYER[kind]) for kind in ObjectKind])
         layers: NDArray[np.int64] = of_kind[self.things["kind"][self.boxes["thing"]]]
         return layers
 
     @cached_property
     def thing_names(self) -> tuple[str, ...]:
         """The name of each thing, as ``get_names_of_all_objects`` lists them; numbered within its kind."""
-        count = dict.fromkeys(Kind, 0)
+        count = dict.fromkeys(ObjectKind, 0)
         names = []
-        for kind in map(Kind, self.things["kind"].tolist()):
+        for kind in map(ObjectKind, self.things["kind"].tolist()):
             names.append(f"{_NAMES[kind]}_{count[kind]}")
             count[kind] += 1
         for thing, label in self.labels:
@@ -142,7 +142,7 @@ class Scene:
         """Every box with its name, its id and the place of its thing, in their order."""
         bases, yaws = self.things["base"].tolist(), self.things["yaw_rad"].tolist()
         poses = [Transform(Vector3D(*base), _turned(yaw)) for base, yaw in zip(bases, yaws, strict=True)]
-        is_light = (self.things["kind"] == Kind.TRAFFIC_LIGHT).tolist()
+        is_light = (self.things["kind"] == ObjectKind.TRAFFIC_LIGHT).tolist()
         objects, last, nth = [], -1, 0
         for box, thing, tag in zip(
             self.world_boxes, self.boxes["thing"].tolist(), self.boxes["tag"].tolist(), strict=True
@@ -180,7 +180,7 @@ def join(scenes: "list[Scene]") -> Scene:
     return Scene(np.concatenate([scene.things for scene in scenes]), boxes, tuple(labels))
 
 
-def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> StructuredArray:
+def things_with(kind: ObjectKind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> StructuredArray:
     """Return things (N,) of a kind that stand at ``base_m`` (N, 3)."""
     things = np.zeros(len(base_m), THING)
     things["kind"], things["base"], things["yaw_rad"] = kind, base_m, yaw_rad

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linden.maps.ground import Ground
 from linden.protocol.values.enums import SemanticTag
 from linden.protocol.values.space import Transform
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, join, things_with
 
 POST_HALF_WIDTH_M = 0.05
 """Half the width of a sign's square steel post, and about that of a light's pole where a bumper meets it."""
@@ -50,18 +50,21 @@ def posts(placed: Sequence[Post], ground: Ground) -> Scene:
     if any(post.is_light for post in placed[lights:]):
         raise ValueError("lights come before signs, so that a thing's number is that of its actor")
     return join(
-        [_posts(placed[:lights], ground, Kind.TRAFFIC_LIGHT), _posts(placed[lights:], ground, Kind.TRAFFIC_SIGN)]
+        [
+            _posts(placed[:lights], ground, ObjectKind.TRAFFIC_LIGHT),
+            _posts(placed[lights:], ground, ObjectKind.TRAFFIC_SIGN),
+        ]
     )
 
 
-def _posts(placed: Sequence[Post], ground: Ground, kind: Kind) -> Scene:
+def _posts(placed: Sequence[Post], ground: Ground, kind: ObjectKind) -> Scene:
     base = np.array([post.transform.location for post in placed], np.float64).reshape(-1, 3)
     under_m, _ = ground.surfaces_under(base)
     base[:, 2] = np.where(base[:, 2] - under_m > HIGHEST_M, base[:, 2], under_m)
     things = things_with(kind, base, np.radians([post.transform.rotation.yaw for post in placed]))
     half = np.array([POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M])
     pole = boxes_on(things, np.array([0.0, 0.0, half[2]]), half, SemanticTag.POLES)
-    if kind is Kind.TRAFFIC_LIGHT:
+    if kind is ObjectKind.TRAFFIC_LIGHT:
         above = np.array([0.0, 0.0, POST_HEIGHT_M + HEAD_HALF_M[2]])
         return assembled(things, pole, boxes_on(things, above, np.array(HEAD_HALF_M), SemanticTag.TRAFFIC_LIGHT))
     on_it = np.array([0.0, 0.0, PLATE_BOTTOM_M + PLATE_HALF_M[2]])
@@ -79,7 +82,7 @@ def walls(feet_m: F64, height_m: float) -> Scene:
     begin, end = feet_m[:, 0], feet_m[:, 1]
     middle, ahead = 0.5 * (begin + end), end - begin
     middle[:, 2] = np.minimum(begin[:, 2], end[:, 2])
-    things = things_with(Kind.WALL, middle, np.arctan2(ahead[:, 1], ahead[:, 0]))
+    things = things_with(ObjectKind.WALL, middle, np.arctan2(ahead[:, 1], ahead[:, 0]))
     half = 0.5 * np.column_stack(
         [np.hypot(ahead[:, 0], ahead[:, 1]), np.zeros(len(ahead)), abs(ahead[:, 2]) + height_m]
     )

@@ -10,7 +10,7 @@ from linden.maps.ground import Ground
 from linden.maps.records import LOT_WIDTH_M
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import LOTS_A_LAMP, on_lots
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, things_with
 from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
@@ -39,7 +39,7 @@ def poles(lots: StructuredArray, ground: Ground) -> Scene:
     some = lots[(np.arange(len(lots)) % LOTS_A_LAMP == LOTS_A_LAMP // 2) & same_side]
     base = on_lots(some, ground, np.full(len(some), _POLE_DEPTH_M), np.full(len(some), _POLE_ASIDE_M))
     clear = ~_on_road(base[:, :2], ground)
-    things = things_with(Kind.UTILITY_POLE, base[clear], some["yaw_rad"][clear])
+    things = things_with(ObjectKind.UTILITY_POLE, base[clear], some["yaw_rad"][clear])
     half = np.array([POLE_HALF_M, POLE_HALF_M, 0.5 * POLE_HEIGHT_M])
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.POLES))
 
@@ -52,7 +52,7 @@ def shelters(stops_m: F64, kerbs: F64, others: Scene, ground: Ground) -> Scene:
     found = [_beside(stop, kerb, others, ground) for stop, kerb in zip(stops_m, kerbs, strict=True)]
     places = [place for place in found if place is not None]
     base = np.array([place[0] for place in places]).reshape(-1, 3)
-    things = things_with(Kind.SHELTER, base, np.array([place[1] for place in places]))
+    things = things_with(ObjectKind.SHELTER, base, np.array([place[1] for place in places]))
     x, y, z = SHELTER_HALF_M
     back = boxes_on(things, np.array([x - PANEL_HALF_M, 0.0, z]), np.array([PANEL_HALF_M, y, z]), SemanticTag.STATIC)
     ends = [

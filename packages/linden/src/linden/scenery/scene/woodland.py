@@ -12,7 +12,7 @@ from linden.maps.ground import Ground
 from linden.plane_bins import nearby
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import SEED, TRUNK_HALF_M, TRUNK_HEIGHT_M, between
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, things_with
 from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
@@ -38,7 +38,7 @@ def groves(lots: StructuredArray, others: Scene, avoid_m: F64, ground: Ground) -
     open_land &= _away_from(places, avoid_m)
     places, thick = places[open_land], thick[open_land]
     height, _ = ground.surfaces_under(np.column_stack([places, np.full(len(places), _HIGH_M)]))
-    things = things_with(Kind.TREE, np.column_stack([places, height]), 6.0 * thick)
+    things = things_with(ObjectKind.TREE, np.column_stack([places, height]), 6.0 * thick)
     half = np.full((len(places), 3), 0.5 * TRUNK_HEIGHT_M)
     half[:, :2] = between(TRUNK_HALF_M, thick)[:, None]
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))

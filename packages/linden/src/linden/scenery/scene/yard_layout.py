@@ -12,7 +12,7 @@ from linden.maps.ground import Ground
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import HOUSE_WIDTH_M, LOTS_A_LAMP, SEED, between, on_lots, tree_side, with_house
-from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.scenery.scene.objects import ObjectKind, Scene, assembled, boxes_on, join, things_with
 from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
@@ -86,7 +86,7 @@ def _draw(lots: StructuredArray) -> F64:
 
 
 def _house_rows(houses: Scene) -> I64:
-    return np.flatnonzero(houses.things["kind"] == Kind.HOUSE).astype(np.int64)
+    return np.flatnonzero(houses.things["kind"] == ObjectKind.HOUSE).astype(np.int64)
 
 
 def _porches(box: StructuredArray, things: StructuredArray, draw: F64) -> Scene:
@@ -94,7 +94,7 @@ def _porches(box: StructuredArray, things: StructuredArray, draw: F64) -> Scene:
     box, things = box[chosen], things[chosen]
     x = -box["half"][:, 0] - 0.5 * PORCH_DEPTH_M - 0.02
     forward = np.column_stack([np.cos(box["yaw_rad"]), np.sin(box["yaw_rad"]), np.zeros(len(box))])
-    made = things_with(Kind.PORCH, things["base"] + forward * x[:, None], box["yaw_rad"])
+    made = things_with(ObjectKind.PORCH, things["base"] + forward * x[:, None], box["yaw_rad"])
     half = np.column_stack(
         [
             np.full(len(box), 0.5 * PORCH_DEPTH_M),
@@ -109,7 +109,7 @@ def _hedges(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     chosen = draw[:, 1] < HEDGES
     lots = lots[chosen]
     base = on_lots(lots, ground, np.full(len(lots), HEDGE_DEPTH_M), np.full(len(lots), HEDGE_ASIDE_M))
-    things = things_with(Kind.HEDGE, base, lots["yaw_rad"])
+    things = things_with(ObjectKind.HEDGE, base, lots["yaw_rad"])
     half = np.array(HEDGE_HALF_M)
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
 
@@ -125,7 +125,7 @@ def _fences(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     for chosen, depth, aside, (half_x, half_y) in runs:
         some = lots[chosen]
         base = on_lots(some, ground, np.full(len(some), depth), np.full(len(some), aside))
-        things = things_with(Kind.FENCE, base, some["yaw_rad"])
+        things = things_with(ObjectKind.FENCE, base, some["yaw_rad"])
         tall = np.where(draw[chosen, 4] < 0.4, *FENCE_HEIGHT_M)
         half = np.column_stack([np.full(len(some), half_x), np.full(len(some), half_y), 0.5 * tall])
         scenes.append(assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.FENCES)))
@@ -140,7 +140,7 @@ def _cars(lots: StructuredArray, ground: Ground, drive: Drive, draw: F64) -> Sce
     inwards = CAR_FRONT_M + half[:, 0] + between((0.0, 0.3), draw[lot, 7])
     base = on_lots(lots[lot], ground, inwards, side * DRIVE_ASIDE_M)
     turned = np.where(draw[lot, 8] < 0.7, 0.0, np.pi)  # some are backed in
-    things = things_with(Kind.PARKED_CAR, base, lots["yaw_rad"][lot] + turned)
+    things = things_with(ObjectKind.PARKED_CAR, base, lots["yaw_rad"][lot] + turned)
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.CAR))
 
 

@@ -16,7 +16,7 @@ from linden.maps.opendrive.mesh import RoadMesh
 from linden.maps.opendrive.model import NO_JUNCTION
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import Look, polygons
+from linden.scenery.patches import PatchLook, polygons
 from linden.scenery.streets.road import ASPHALT, is_paved
 
 F64 = NDArray[np.float64]
@@ -65,7 +65,7 @@ def floors(road: RoadMesh, ground: Ground) -> Floors:
     if not made:
         return Floors(join([]), np.empty((0, 2), np.int64))
     quads = np.concatenate([quad for quad, _ in made])
-    look = Look(Material.ASPHALT, SemanticTag.ROADS, ASPHALT)
+    look = PatchLook(Material.ASPHALT, SemanticTag.ROADS, ASPHALT)
     return Floors(polygons(quads, look, (0.0, 0.0, 1.0)), np.concatenate([cells for _, cells in made]))
 
 

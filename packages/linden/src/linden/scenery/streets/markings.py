@@ -13,7 +13,7 @@ from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import RoadMark
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh
-from linden.scenery.patches import Look, strips
+from linden.scenery.patches import PatchLook, strips
 from linden.scenery.streets.simplified_lanes import SimplifiedLanes
 
 F64 = NDArray[np.float64]
@@ -59,7 +59,7 @@ def lines(simplified_lanes: SimplifiedLanes) -> Mesh:
     left_m = np.array([stripe.left_m for stripe in stripes])[owner]
     half_m = np.array([0.5 * stripe.width_m for stripe in stripes])[owner]
     colour = np.array([stripe.colour for stripe in stripes], np.uint8).reshape(-1, 3)[owner]
-    look = Look(Material.PAINT, SemanticTag.ROAD_LINES, colour)
+    look = PatchLook(Material.PAINT, SemanticTag.ROAD_LINES, colour)
     first, second = (_edge_at(tables, lane, is_outer, s_m, left_m + side * half_m) for side in (1.0, -1.0))
     return strips(first, second, continues, look, np.broadcast_to([0.0, 0.0, 1.0], first.shape))
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from linden.maps.ground import Ground
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import Look, polygons, strips
+from linden.scenery.patches import PatchLook, polygons, strips
 from linden.scenery.streets.road import GRAVEL
 
 F64 = NDArray[np.float64]
@@ -34,9 +34,9 @@ def railroad(line_m: F64, roads: Ground, lawn: Ground) -> Mesh:
     line, left, on_road = track.line, track.left, track.on_road
     open_pieces = ~(on_road | np.append(on_road[1:], [True]))
     across = on_road & np.append(on_road[1:], [False])
-    gravel = Look(Material.GRAVEL, SemanticTag.RAIL_TRACK, GRAVEL)
-    steel = Look(Material.METAL, SemanticTag.RAIL_TRACK, _RAIL_STEEL)
-    panel = Look(Material.CONCRETE, SemanticTag.ROADS, _PANEL)
+    gravel = PatchLook(Material.GRAVEL, SemanticTag.RAIL_TRACK, GRAVEL)
+    steel = PatchLook(Material.METAL, SemanticTag.RAIL_TRACK, _RAIL_STEEL)
+    panel = PatchLook(Material.CONCRETE, SemanticTag.ROADS, _PANEL)
     all_pieces = np.append(np.ones(len(line) - 1, bool), [False])
 
     def at(aside_m: float, above_m: float | F64) -> F64:
@@ -94,7 +94,7 @@ def _ties(track: _Track) -> Mesh:
     wide, deep = _TIE_HALF_M
     sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
     corners = [np.column_stack([line + a * wide * left + b * deep * ahead, z]) for a, b in sides]
-    return polygons(np.stack(corners, axis=1), Look(Material.WOOD, SemanticTag.RAIL_TRACK, _TIE_BROWN), _UP)
+    return polygons(np.stack(corners, axis=1), PatchLook(Material.WOOD, SemanticTag.RAIL_TRACK, _TIE_BROWN), _UP)
 
 
 def _sampled(line_m: F64, step_m: float) -> tuple[F64, F64]:

@@ -7,7 +7,7 @@ from linden.maps.ground import Ground
 from linden.maps.opendrive.mesh import TAGS
 from linden.protocol.values.enums import LaneType, SemanticTag
 from linden.scenery.mesh import FACE, NO_OBJECT, Material, Mesh, join
-from linden.scenery.patches import Look, strips
+from linden.scenery.patches import PatchLook, strips
 from linden.scenery.streets.simplified_lanes import SimplifiedLanes
 from linden.structured import StructuredArray
 
@@ -86,8 +86,8 @@ def kerbs(simplified_lanes: SimplifiedLanes, ground: Ground) -> Mesh:
     across = outer - inner
     across[:, 2] = 0.0
     beside = _outer_heights(simplified_lanes)
-    stone = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
-    asphalt = Look(Material.ASPHALT, SemanticTag.ROADS, ASPHALT)  # so that none shows in a gap between turns
+    stone = PatchLook(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
+    asphalt = PatchLook(Material.ASPHALT, SemanticTag.ROADS, ASPHALT)  # so that none shows in a gap between turns
     road_z = inner[:, 2] - tables.heights_inner.value(
         simplified_lanes.lane, simplified_lanes.s_m, simplified_lanes.probe_m
     )
@@ -124,7 +124,7 @@ def _outer_heights(simplified_lanes: SimplifiedLanes) -> F64:
 
 
 def _between(
-    simplified_lanes: SimplifiedLanes, line: F64, other_z: F64, wanted: NDArray[np.bool_], towards: F64, look: Look
+    simplified_lanes: SimplifiedLanes, line: F64, other_z: F64, wanted: NDArray[np.bool_], towards: F64, look: PatchLook
 ) -> Mesh:
     """Return upright faces along ``line`` to the heights ``other_z`` where they are wanted at either end."""
     other = np.column_stack([line[:, :2], other_z])

@@ -21,7 +21,7 @@ from linden.maps.opendrive.outlines import outline_of
 from linden.maps.opendrive.roadside import RoadObject
 from linden.protocol.values.enums import LaneType, SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
-from linden.scenery.patches import Look, polygons
+from linden.scenery.patches import PatchLook, polygons
 from linden.scenery.streets.markings import PAINT_HEIGHT_M, WHITE
 from linden.scenery.streets.road import GRASS, KERB_STONE, is_paved
 
@@ -30,7 +30,7 @@ F64 = NDArray[np.float64]
 _BAR_M, _BAR_GAP_M = 0.6, 0.6  # of a crosswalk: 12 to 24 inches each, MUTCD 2009, section 3B.18
 _TOOTH_M, _TOOTH_GAP_M = 0.45, 0.2  # of a yield line, section 3B.16
 _ISLAND_M = 0.15  # how high islands rise above the road
-_PAINT = Look(Material.PAINT, SemanticTag.ROAD_LINES, WHITE)
+_PAINT = PatchLook(Material.PAINT, SemanticTag.ROAD_LINES, WHITE)
 _UP = (0.0, 0.0, 1.0)
 _HIGH_M = 1e6
 
@@ -156,7 +156,7 @@ def _island(outline: F64, ground: Ground) -> Mesh:
     raised = np.array([0.0, 0.0, _ISLAND_M])
     top = foot + raised
     inner = top + 0.08 * (middle + raised - top)
-    stone = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
+    stone = PatchLook(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
     following = np.roll(np.arange(len(foot)), -1)
     walls = np.stack([foot, foot[following], top[following], top], axis=1)
     rim = np.stack([top, top[following], inner[following], inner], axis=1)
@@ -164,7 +164,7 @@ def _island(outline: F64, ground: Ground) -> Mesh:
         [
             polygons(walls, stone, foot - middle),
             polygons(rim, stone, _UP),
-            polygons(inner[None], Look(Material.GRASS, SemanticTag.TERRAIN, GRASS), _UP),
+            polygons(inner[None], PatchLook(Material.GRASS, SemanticTag.TERRAIN, GRASS), _UP),
         ]
     )
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from linden.protocol.values.actors import ActorDescription
 from linden.sensors.camera.events import EventPixels, Events
 from linden.sensors.camera.spec import Picture, camera_spec, event_spec, film
-from linden.sensors.view import Look
+from linden.sensors.view import SensorLook
 
 if TYPE_CHECKING:
     from linden.sensors.camera.renderer import Renderer
@@ -24,14 +24,14 @@ class Image(NamedTuple):
     pixels: Pixels  # (height, width, 4) bytes B, G, R, A, or (height, width, 2) floats of a flow
 
 
-def renderer(look: Look) -> "Renderer":
+def renderer(look: SensorLook) -> "Renderer":
     """Return the renderer; it is imported when the first camera needs it."""
     from linden.sensors.camera.renderer import renderer_of  # noqa: PLC0415 - see above
 
     return renderer_of(look.seen.caster)
 
 
-def pixels(picture: Picture, look: Look) -> Pixels:
+def pixels(picture: Picture, look: SensorLook) -> Pixels:
     """Return a picture; cameras of one place, kind, lens and film share it."""
     key = (picture, look.pose, look.before)
     if key not in look.shared:
@@ -57,11 +57,11 @@ class Camera:
         self.blueprint = description.id
         self.picture = Picture(self.kind, camera_spec(description))
 
-    def expect(self, look: Look) -> None:
+    def expect(self, look: SensorLook) -> None:
         """Begin what ``measure`` will be asked for."""
         renderer(look).expect(self.picture, look)
 
-    def measure(self, look: Look) -> Image:
+    def measure(self, look: SensorLook) -> Image:
         """Return the picture of a frame."""
         return Image(self.blueprint, self.picture.spec.fov_deg, pixels(self.picture, look))
 
@@ -122,11 +122,11 @@ class EventCamera:
         self.events = event_spec(description)
         self._retina: EventPixels | None = None
 
-    def expect(self, look: Look) -> None:
+    def expect(self, look: SensorLook) -> None:
         """Begin what ``measure`` will be asked for."""
         renderer(look).expect(self.picture, look)
 
-    def measure(self, look: Look) -> Events | None:
+    def measure(self, look: SensorLook) -> Events | None:
         """Return what has changed since the last picture, None where nothing has."""
         image, spec = np.asarray(pixels(self.picture, look), np.uint8), self.picture.spec
         if self._retina is None:

@@ -11,7 +11,7 @@ from linden.sensors.camera.picture.rgb import picture as coloured
 from linden.sensors.camera.pixel_rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Picture
 from linden.sensors.casting.caster import CPU, Caster, Hits, Rays
-from linden.sensors.view import Look
+from linden.sensors.view import SensorLook
 
 Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
@@ -19,11 +19,11 @@ Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 class Renderer(Protocol):
     """Makes pictures: (height, width, 4) bytes B, G, R, A, and (height, width, 2) floats of a flow."""
 
-    def expect(self, picture: Picture, look: Look) -> None:
+    def expect(self, picture: Picture, look: SensorLook) -> None:
         """Begin a picture that will be asked for, where it can be made beside others."""
         ...
 
-    def make(self, picture: Picture, look: Look) -> Pixels:
+    def make(self, picture: Picture, look: SensorLook) -> Pixels:
         """Return a picture."""
         ...
 
@@ -31,10 +31,10 @@ class Renderer(Protocol):
 class CpuRenderer:
     """The CPU's pictures."""
 
-    def expect(self, picture: Picture, look: Look) -> None:
+    def expect(self, picture: Picture, look: SensorLook) -> None:
         """Do nothing: each picture is made by all processors."""
 
-    def make(self, picture: Picture, look: Look) -> Pixels:
+    def make(self, picture: Picture, look: SensorLook) -> Pixels:
         """Return a picture."""
         spec, (rays, hits) = picture.spec, view(picture.spec, look)
         if picture.film is not None:
@@ -48,7 +48,7 @@ class CpuRenderer:
         return (labels.semantic if picture.kind == "semantic" else labels.instance)(spec, hits, look.seen)
 
 
-def view(spec: CameraSpec, look: Look) -> tuple[Rays, Hits]:
+def view(spec: CameraSpec, look: SensorLook) -> tuple[Rays, Hits]:
     """Return a camera's rays and what they meet; cameras of one place and lens share them."""
     key = ("view", spec, look.pose)
     if key not in look.shared:

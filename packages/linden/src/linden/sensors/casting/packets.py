@@ -1,4 +1,4 @@
-"""Embree ray packets in numba: `Packet`, fill and query functions, and `build` for closest-hit and occlusion kernels.
+"""Embree ray packets in numba: `RayPacket`, fill and query functions, and `build` for closest hit and occlusion.
 
 RTCRayHit16 and RTCRayHit8 (embree4/rtcore_ray.h) are columns of that many numbers of 4 bytes: those of the ray, then
 those of the hit. A kernel that wants more than distances (a camera's) is built of the same parts.
@@ -57,7 +57,7 @@ def asked(*, coherent: bool, outer: bool) -> NDArray[np.uint64]:
     return np.array([flags | 0xFFFF_FFFF << 32, 0, inner_sides.address() if outer else 0, 0, 0], np.uint64)
 
 
-class Packet(NamedTuple):
+class RayPacket(NamedTuple):
     """Memory for one packet, used again and again; ``width`` rays in columns."""
 
     floats: F32  # (columns * width,)
@@ -68,7 +68,7 @@ class Packet(NamedTuple):
 
 
 @part
-def new_packet(width: int) -> Packet:
+def new_packet(width: int) -> RayPacket:
     """Return a packet of rays without mask, id, flags, start or time."""
     raw = np.zeros((_COLUMNS + 1) * width + 16, np.float32)
     skip = ((-raw.ctypes.data) % _ALIGNED) // 4
@@ -76,11 +76,11 @@ def new_packet(width: int) -> Packet:
     ints = floats.view(np.int32)
     ints[MASK * width : (MASK + 1) * width] = _ALL_BITS
     valid = ints[_COLUMNS * width :]
-    return Packet(floats, ints, valid, floats.ctypes.data, valid.ctypes.data)
+    return RayPacket(floats, ints, valid, floats.ctypes.data, valid.ctypes.data)
 
 
 @part
-def put_rays(packet: Packet, width: int, origin: F32, direction: F32, first: int, count: int, far_m: float) -> None:
+def put_rays(packet: RayPacket, width: int, origin: F32, direction: F32, first: int, count: int, far_m: float) -> None:
     """Fill a packet with ``count`` rays from number ``first`` on, up to a distance."""
     floats, ints, valid = packet.floats, packet.ints, packet.valid
     for axis in range(3):
@@ -96,7 +96,7 @@ def put_rays(packet: Packet, width: int, origin: F32, direction: F32, first: int
 
 
 @part
-def intersect(packet: Packet, width: int, scene: int, arguments: int) -> None:
+def intersect(packet: RayPacket, width: int, scene: int, arguments: int) -> None:
     """Find the nearest hit of each ray; ``scene`` and ``arguments`` are addresses."""
     if width == 16:
         _intersect16(packet.valid_at, scene, packet.at, arguments)
@@ -107,7 +107,7 @@ def intersect(packet: Packet, width: int, scene: int, arguments: int) -> None:
 
 
 @part
-def occlude(packet: Packet, width: int, scene: int, arguments: int) -> None:
+def occlude(packet: RayPacket, width: int, scene: int, arguments: int) -> None:
     """Make FAR negative for each ray that meets anything."""
     if width == 16:
         _occluded16(packet.valid_at, scene, packet.at, arguments)
@@ -119,7 +119,7 @@ def occlude(packet: Packet, width: int, scene: int, arguments: int) -> None:
 
 @part
 def _read(
-    packet: Packet,
+    packet: RayPacket,
     width: int,
     count: int,
     pose: F32,
@@ -172,7 +172,7 @@ def place(geometry: NDArray[np.int64], pose: F32, before: F32) -> None:
             _commit_geometry(geometry[row])
 
 
-class Kernels(NamedTuple):
+class PacketKernels(NamedTuple):
     """Compiled for a width; both work on rays from ``start`` to ``stop`` only, ``start`` being a multiple of it."""
 
     closest: Any
@@ -180,7 +180,7 @@ class Kernels(NamedTuple):
 
 
 @lru_cache(maxsize=3)
-def build(width: int) -> Kernels:
+def build(width: int) -> PacketKernels:
     """Return the kernels for packets of a width; once, for compiled code is never given back."""
     sources = fingerprint(Path(__file__))
 
@@ -225,4 +225,4 @@ def build(width: int) -> Kernels:
             for k in range(count):
                 hit[first + k] = packet.floats[FAR * width + k] < 0.0
 
-    return Kernels(unlocked(closest), unlocked(blocked))
+    return PacketKernels(unlocked(closest), unlocked(blocked))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from linden.geometry import rotation_matrix
 from linden.protocol.values.actors import ActorDescription
 from linden.sensors.casting.caster import NOTHING, STATIC, Hits, Rays
-from linden.sensors.view import F64, Look, Seen, actor_of_objects
+from linden.sensors.view import F64, Seen, SensorLook, actor_of_objects
 
 F32 = NDArray[np.float32]
 
@@ -59,7 +59,7 @@ class ObstacleDetector:
     def skip(self, interval_s: float) -> None:
         """Do nothing: no measurement depends on another."""
 
-    def measure(self, look: Look) -> Obstacle | None:
+    def measure(self, look: SensorLook) -> Obstacle | None:
         """Return the nearest obstacle, None where the way is free."""
         spec = self._spec
         across, ahead_m = bundle(spec.radius_m)

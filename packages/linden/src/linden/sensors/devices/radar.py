@@ -15,7 +15,7 @@ from linden.geometry import rotation_matrix
 from linden.protocol.values.actors import ActorDescription
 from linden.sensors.casting.caster import Hits, Instances, Rays
 from linden.sensors.devices.noise import dice_of
-from linden.sensors.view import F64, Look
+from linden.sensors.view import F64, SensorLook
 
 F32 = NDArray[np.float32]
 
@@ -63,7 +63,7 @@ class Radar:
     def skip(self, interval_s: float) -> None:
         """Do nothing: no measurement depends on another."""
 
-    def measure(self, look: Look) -> Detections:
+    def measure(self, look: SensorLook) -> Detections:
         """Return what the rays of the time since the last measurement met, in their order."""
         spec = self._spec
         ahead = directions(spec, min(MOST_RAYS, int(spec.points_per_s * look.interval_s + 1e-6)), look.number)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from linden.protocol.values.enums import TrafficLightState
 from linden.scenery.mesh import LampOf
 from linden.scenery.scene.lamp_states import is_night
-from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.objects import ObjectKind
 
 if TYPE_CHECKING:
     from linden.simulation.episode import Episode
@@ -48,15 +48,15 @@ def light_states(episode: "Episode") -> LightStates:
     scene = episode.surroundings.scene
     shining, colour = np.zeros(len(scene.things), np.uint32), np.zeros((len(scene.things), 3), np.uint8)
     kinds = scene.things["kind"]
-    lights = np.flatnonzero(kinds == Kind.TRAFFIC_LIGHT)
+    lights = np.flatnonzero(kinds == ObjectKind.TRAFFIC_LIGHT)
     bits = np.zeros(max(TrafficLightState) + 1, np.uint32)
     for state, lens in _LENS.items():
         bits[state] = 1 << lens
     shining[lights] = bits[episode.traffic.state.colour[: len(lights)]]
-    lamps, states = kinds == Kind.STREET_LAMP, episode.surroundings.lamps.states()
+    lamps, states = kinds == ObjectKind.STREET_LAMP, episode.surroundings.lamps.states()
     shining[lamps] = [int(lamp.active) << LampOf.STREET for lamp in states]
     colour[lamps] = np.array([lamp.color for lamp in states], np.uint8).reshape(-1, 3)
     if is_night(episode.weather):
-        shining[kinds == Kind.HOUSE] = 1 << LampOf.WINDOW
+        shining[kinds == ObjectKind.HOUSE] = 1 << LampOf.WINDOW
     things = scene.boxes["thing"]
     return LightStates(shining[things], colour[things])

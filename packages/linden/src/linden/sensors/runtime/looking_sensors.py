@@ -13,7 +13,7 @@ from linden.sensors.devices.lidar import Lidar, SemanticLidar
 from linden.sensors.devices.obstacle import ObstacleDetector
 from linden.sensors.devices.radar import Radar
 from linden.sensors.runtime.sensor_scene import SensorScene
-from linden.sensors.view import F64, AsynchronousSensor, Look, LookingSensor, Seen
+from linden.sensors.view import F64, AsynchronousSensor, LookingSensor, Seen, SensorLook
 from linden.simulation.actor_table import ActorRecord
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class ScheduledSensor:
         self._last_s: float | None = None
         self._pose: Transform | None = None
 
-    def turn(self, episode: "Episode", sensor: ActorRecord, now: "SensorFrame", *, wanted: bool) -> Look | None:
+    def turn(self, episode: "Episode", sensor: ActorRecord, now: "SensorFrame", *, wanted: bool) -> SensorLook | None:
         """Return what there is to be measured, None where nothing is; to be called once in every frame."""
         number = self._schedule.made
         due, self._schedule = advance(self._schedule, episode.elapsed_s)
@@ -51,7 +51,7 @@ class ScheduledSensor:
         if not wanted:
             self.sensor.skip(passed_s)
             return None
-        return Look(
+        return SensorLook(
             seen=now.seen(episode),
             shared=now.shared,
             pose=pose,

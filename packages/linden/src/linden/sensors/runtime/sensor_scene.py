@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.background import Unwanted, in_background
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.maps.library import LoadedMap
 from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
@@ -27,7 +27,7 @@ U32 = NDArray[np.uint32]
 OBJECTS_FROM = NO_ACTOR_FROM + 0x8000
 """Ids of objects that are no actors begin here: no actor has one, nor one that is the same in its lowest 16 bits."""
 
-_OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
+_OF_SIGNALS = (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)
 
 
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:

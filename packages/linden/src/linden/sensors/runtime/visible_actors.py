@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import BlueprintKind
 from linden.scenery.actors.posing import VEHICLE_FRAMES, WALKER_FRAMES, posed_frames, vehicle_frames, walker_frames
 from linden.scenery.mesh import LampOf
 from linden.sensors.casting.caster import Instances
@@ -20,7 +20,7 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 _UNPAINTED = "128,128,128"
-_VISIBLE = (Kind.VEHICLE, Kind.WALKER, Kind.PROP)
+_VISIBLE = (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP)
 _BLINKS_HZ = 1.5
 """In the middle of what UN ECE regulation 48 allows, 60 to 120 a minute."""
 
@@ -144,13 +144,15 @@ def _survey(episode: "Episode", bodies: "BlueprintMeshes") -> _ActorRows:
     embodied = [record.slot != NO_BODY for record in records]
     parts = [(index, part) for index, record in enumerate(records) for part in bodies.parts(record.description)]
     colours = [_colour(record) for record in records]
-    kinds = np.array([record.kind if own else Kind.PROP for record, own in zip(records, embodied, strict=True)], int)
+    kinds = np.array(
+        [record.kind if own else BlueprintKind.PROP for record, own in zip(records, embodied, strict=True)], int
+    )
     return _ActorRows(
         records=records,
         row=np.array([actors.row(record.id) for record in records], np.int32),
         slot=np.array([_carrying_slot(episode, record) for record in records], np.int32),
-        vehicles=np.flatnonzero(kinds == Kind.VEHICLE),
-        walkers=np.flatnonzero(kinds == Kind.WALKER),
+        vehicles=np.flatnonzero(kinds == BlueprintKind.VEHICLE),
+        walkers=np.flatnonzero(kinds == BlueprintKind.WALKER),
         actor=np.array([index for index, _ in parts], np.intp),
         mesh=np.array([part.mesh for _, part in parts], np.int32),
         frame=np.array([part.frame for _, part in parts], np.intp),

@@ -16,7 +16,7 @@ from linden.replay.file.packets import NoRecordingError, RecordingError
 from linden.replay.file.read import Recording
 from linden.replay.file.reports import ASKED_FOR, blocked, collisions, number
 from linden.replay.file.track import track_of
-from linden.replay.replayer import Plan, Replayer
+from linden.replay.replayer import Replayer, ReplayPlan
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import Long, method
 
@@ -142,7 +142,9 @@ def replay_file(
         told += f"Loading map {map_name}\nReplayer will start after map is loaded...\n"
     try:
         track = yield lambda: track_of(recording)
-        span = simulation.replayer.start(simulation, track, Plan(start, duration, follow_id, offset, replay_sensors))
+        span = simulation.replayer.start(
+            simulation, track, ReplayPlan(start, duration, follow_id, offset, replay_sensors)
+        )
     except RecordingError as error:
         raise Refusal(str(error)) from error
     total = number(span.total_s)

@@ -18,8 +18,8 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from basu.agents.builtin.driving.path import Path, Place
-    from basu.agents.builtin.scene import Body
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
+    from basu.agents.builtin.scene import VehicleGeometry
 
 
 CATCH_M = 2.0  # an offset shrinks by e over this length at walking pace …
@@ -28,7 +28,9 @@ CALM_S = 0.3  # yaw errors are answered within this time at speed, at walking pa
 MAX_TURN_IN_RAD = 0.6  # towards the path, however far off
 
 
-def steer_angle_rad(path: Path, place: Place, yaw_rad: float, speed_mps: float, body: Body, preview_s: float) -> float:
+def steer_angle_rad(
+    path: SampledPath, place: PathPosition, yaw_rad: float, speed_mps: float, body: VehicleGeometry, preview_s: float
+) -> float:
     """The front wheels' angle, positive to the right.
 
     Args:

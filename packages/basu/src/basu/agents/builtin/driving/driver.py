@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.driving.controllers import PedalControl, steer_angle_rad
-from basu.agents.builtin.driving.manner import BASIC, NORMAL, Limits
+from basu.agents.builtin.driving.manner import BASIC, NORMAL, ComfortLimits
 from basu.agents.builtin.driving.planner import Planner
-from basu.agents.builtin.passing.overtaking import Overtaking, Phase
+from basu.agents.builtin.passing.overtaking import Overtaking, PassingPhase
 from basu.agents.builtin.passing.pulling_over import PullingOver, Tailgating
 from basu.agents.builtin.rules.obstacles import Obstacles
 from basu.agents.builtin.scene import Restriction, Urgency
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
     from basu.agents.builtin.driving.controllers import DriveModel, Pedals
     from basu.agents.builtin.driving.manner import Manner
-    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
     from basu.agents.builtin.driving.speed_profile import SpeedProfile
     from basu.agents.builtin.driving.task import Task
     from basu.agents.builtin.passing.detour import Detour
-    from basu.agents.builtin.passing.road import Road
+    from basu.agents.builtin.passing.road import RoadBesidePath
     from basu.agents.builtin.rules.stopping_lines import Light
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 
 HORIZON_M = 160.0  # how far ahead slowdowns are looked at: from 15 m/s down to walking pace in comfort
@@ -34,7 +34,7 @@ RULES_M = 60.0  # how far ahead lines and stops are
 STEER_DELAY_STEPS = 1.0  # a command takes effect one step after the measurement it is made from
 
 
-class Command(NamedTuple):
+class DrivingCommand(NamedTuple):
     """What hands and feet do until the next step."""
 
     throttle: float
@@ -51,11 +51,13 @@ class Driver:
         place: where the vehicle is beside the path, None before the first step.
     """
 
-    place: Place | None
+    place: PathPosition | None
 
-    def __init__(self, task: Task, body: Body, model: DriveModel, dt_s: float, manner: Manner = BASIC) -> None:
+    def __init__(
+        self, task: Task, body: VehicleGeometry, model: DriveModel, dt_s: float, manner: Manner = BASIC
+    ) -> None:
         self.task = task
-        self.path: Path = task.path
+        self.path: SampledPath = task.path
         self.profile: SpeedProfile = task.profile
         self.place = None
         self.planner = Planner(dt_s, manner.comfort)
@@ -65,12 +67,12 @@ class Driver:
         self._preview_s = STEER_DELAY_STEPS * dt_s
         self._steer_rad = 0.0
 
-    def step(self, ego: Ego, others: Sequence[Other], shows: Callable[[str], Light]) -> Command:
+    def step(self, ego: DrivenVehicle, others: Sequence[Other], shows: Callable[[str], Light]) -> DrivingCommand:
         """Decide one step; ``shows`` tells what the light of a landmark id shows."""
         place = self._locate(ego)
         return self._drive(ego, place, others, shows, self.profile.limit_mps[place.near])
 
-    def _locate(self, ego: Ego) -> Place:
+    def _locate(self, ego: DrivenVehicle) -> PathPosition:
         """Find the vehicle beside the path."""
         if self.place is None:
             self.place = self.path.find(ego.x_m, ego.y_m, ego.yaw_rad)
@@ -80,13 +82,13 @@ class Driver:
 
     def _drive(
         self,
-        ego: Ego,
-        place: Place,
+        ego: DrivenVehicle,
+        place: PathPosition,
         others: Sequence[Other],
         shows: Callable[[str], Light],
         limit_mps: float,
         demands: Iterable[Restriction] = (),
-    ) -> Command:
+    ) -> DrivingCommand:
         """Meet all restrictions: of path, rules, other actors, and the caller's own."""
         restrictions = [
             Restriction(distance_m, speed_mps, Urgency.GENTLE, "bend or lower limit")
@@ -100,15 +102,15 @@ class Driver:
         pedals = self._press(ego, accel_mps2)
         if ego.speed_mps > 0.1:  # standing wheels are not turned
             self._steer_rad = steer_angle_rad(self.path, place, ego.yaw_rad, ego.speed_mps, self._body, self._preview_s)
-        return Command(pedals.throttle, pedals.brake, self._steer_rad)
+        return DrivingCommand(pedals.throttle, pedals.brake, self._steer_rad)
 
-    def _press(self, ego: Ego, accel_mps2: float) -> Pedals:
+    def _press(self, ego: DrivenVehicle, accel_mps2: float) -> Pedals:
         """The feet follow the planner."""
         planner = self.planner
         return self._pedals.step(ego.speed_mps, planner.speed_mps, accel_mps2, holding=planner.holding, gear=ego.gear)
 
     def _ruled(
-        self, ego: Ego, place: Place, others: Sequence[Other], shows: Callable[[str], Light]
+        self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other], shows: Callable[[str], Light]
     ) -> list[Restriction]:
         """The restrictions of signs, lights and stops in sight."""
         s_m, front_s_m = place.s_m, place.s_m + self._body.front_m
@@ -139,7 +141,9 @@ HURRY_MPS = 1.0  # added to a speed below the limit then, up to the limit of bas
 class BehavioralDriver(Driver):
     """A driver with a manner of its own."""
 
-    def __init__(self, task: Task, road: Road, body: Body, model: DriveModel, dt_s: float, manner: Manner) -> None:
+    def __init__(
+        self, task: Task, road: RoadBesidePath, body: VehicleGeometry, model: DriveModel, dt_s: float, manner: Manner
+    ) -> None:
         super().__init__(task, body, model, dt_s, manner)
         assert manner.passing is not None, "a behavioral manner knows how to pass"
         self.manner = manner
@@ -148,14 +152,14 @@ class BehavioralDriver(Driver):
         self.pulling_over = PullingOver(task.path, road, body, manner)
         self.detour: Detour | None = None  # what is driven instead of the lane
         self._road = road
-        self._softer = Limits(SOFTER * manner.comfort.accel_mps2, SOFTER * manner.comfort.jerk_mps3)
+        self._softer = ComfortLimits(SOFTER * manner.comfort.accel_mps2, SOFTER * manner.comfort.jerk_mps3)
 
     @property
     def posted_mps(self) -> float:
         """The limit where the vehicle is."""
         return self._road.limit_mps[0 if self.place is None else self.place.near]
 
-    def step(self, ego: Ego, others: Sequence[Other], shows: Callable[[str], Light]) -> Command:
+    def step(self, ego: DrivenVehicle, others: Sequence[Other], shows: Callable[[str], Light]) -> DrivingCommand:
         """Decide one step."""
         near = [o for o in others if abs(o.x_m - ego.x_m) < NEAR_M and abs(o.y_m - ego.y_m) < NEAR_M]
         place = self._locate(ego)
@@ -170,27 +174,29 @@ class BehavioralDriver(Driver):
             self.planner.comfort = self.manner.comfort
         return self._drive(ego, place, near, shows, limit_mps, demands)
 
-    def _choose_path(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
+    def _choose_path(
+        self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other], *, tailgated: bool
+    ) -> list[Restriction]:
         """Keep to the lane, pass an obstruction, or make room for a tailgater."""
         lane = self.task.path
         own = place if self.path is lane else lane.follow(ego.x_m, ego.y_m, place.near)
         demands: list[Restriction] = []
         if self.pulling_over.detour is None:
             demands = self.overtaking.step(ego, own, others)
-        if self.overtaking.phase is Phase.KEEPING:
+        if self.overtaking.phase is PassingPhase.KEEPING:
             demands.extend(self.pulling_over.step(ego, own, others, tailgated=tailgated))
         self.detour = self.overtaking.detour or self.pulling_over.detour
         self.path = self._obstacles.path = lane if self.detour is None else self.detour.path
         return demands
 
-    def _limit_mps(self, place: Place) -> float:
+    def _limit_mps(self, place: PathPosition) -> float:
         """The speed here, on a way round the speed of that."""
         limit_mps, detour = self.profile.limit_mps[place.near], self.detour
         if detour is not None and detour.extent.from_s_m <= place.s_m <= detour.extent.to_s_m:
             return min(limit_mps, detour.speed_mps)
         return limit_mps
 
-    def _hurried_mps(self, place: Place, limit_mps: float) -> float:
+    def _hurried_mps(self, place: PathPosition, limit_mps: float) -> float:
         """A little more than usual where only the manner keeps below the posted limit."""
         posted_mps = self._road.limit_mps[place.near]
         manner_mps = posted_mps + self.manner.above_limit_mps

@@ -15,14 +15,14 @@ import math
 from typing import NamedTuple
 
 
-class Limits(NamedTuple):
+class ComfortLimits(NamedTuple):
     """What a change of speed may feel like."""
 
     accel_mps2: float
     jerk_mps3: float
 
 
-def slowing_distance_m(speed_mps: float, accel_mps2: float, target_mps: float, limits: Limits) -> float:
+def slowing_distance_m(speed_mps: float, accel_mps2: float, target_mps: float, limits: ComfortLimits) -> float:
     """Metres from here until the speed is ``target_mps``, braking as late and as hard as ``limits`` allow.
 
     ``accel_mps2`` is that of now; where it already lies below what the limits allow, it is held rather than deepened.
@@ -50,7 +50,7 @@ def slowing_distance_m(speed_mps: float, accel_mps2: float, target_mps: float, l
     return onset_m + hold_m + release_m
 
 
-def approach_accel_mps2(excess_mps: float, limits: Limits) -> float:
+def approach_accel_mps2(excess_mps: float, limits: ComfortLimits) -> float:
     """The acceleration with which to near a speed that is ``excess_mps`` away, so that it ends with bounded jerk.
 
     Linear close by and along the square root farther off, joined smoothly; negative where one is too fast.
@@ -100,7 +100,7 @@ class Manner(NamedTuple):
     """One way to drive."""
 
     name: str
-    comfort: Limits  # of changes of speed, where nothing demands more
+    comfort: ComfortLimits  # of changes of speed, where nothing demands more
     lateral_accel_mps2: float  # in bends …
     lateral_jerk_mps3: float  # … and on the way into them
     above_limit_mps: float  # kept to the posted limit; negative: below it
@@ -111,10 +111,10 @@ class Manner(NamedTuple):
 
 
 # basic: below the passengers' 1.0 m/s² and 1.0 m/s³ by what tracking adds
-BASIC = Manner("basic", Limits(0.85, 0.8), 0.9, 0.9, -0.25)
+BASIC = Manner("basic", ComfortLimits(0.85, 0.8), 0.9, 0.9, -0.25)
 CAUTIOUS = Manner(
     "cautious",
-    Limits(0.85, 0.8),
+    ComfortLimits(0.85, 0.8),
     0.9,
     0.9,
     -6.0 / 3.6,
@@ -125,7 +125,7 @@ CAUTIOUS = Manner(
 )
 NORMAL = Manner(
     "normal",
-    Limits(1.1, 1.1),
+    ComfortLimits(1.1, 1.1),
     1.3,
     1.3,
     -0.25,
@@ -136,7 +136,7 @@ NORMAL = Manner(
 )
 AGGRESSIVE = Manner(
     "aggressive",
-    Limits(1.8, 2.0),
+    ComfortLimits(1.8, 2.0),
     2.0,
     2.0,
     0.6,

@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.agents.builtin.scene import Body
+    from basu.agents.builtin.scene import VehicleGeometry
 
 SPACING_M = 0.5  # between the points of a path
 SMOOTHING_M = 2.0  # way points are averaged over this, twice: a bend of radius r is cut by SMOOTHING_M**2 / (12 r)
@@ -21,7 +21,7 @@ LOST_M = 6.0  # farther beside the path than this, the place is looked for anew 
 SAME_PLACE_M = 1.0  # two places that fit a pose about equally well: the earlier one is meant
 
 
-class Place(NamedTuple):
+class PathPosition(NamedTuple):
     """Where a point lies beside the path."""
 
     near: int  # the path point next to it
@@ -31,7 +31,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Path:
+class SampledPath:
     """N points, ``SPACING_M`` apart; CARLA frame, headings and curvature positive clockwise (to the right).
 
     Lists, because a step looks at single points, where lists are several times faster; ``points_m`` for many at once.
@@ -61,7 +61,7 @@ class Path:
         """The curvature between two points."""
         return _between(self.curvature_1pm, s_m / SPACING_M)
 
-    def find(self, x_m: float, y_m: float, yaw_rad: float) -> Place:
+    def find(self, x_m: float, y_m: float, yaw_rad: float) -> PathPosition:
         """The place of a pose anywhere on the path; where the path passes twice, the first time."""
         away_m = np.hypot(self.points_m[:, 0] - x_m, self.points_m[:, 1] - y_m)
         away_m += 10.0 * (
@@ -71,7 +71,7 @@ class Path:
         best = first + int(np.argmin(away_m[first : first + round(4 * SAME_PLACE_M / SPACING_M)]))
         return self.follow(x_m, y_m, best)
 
-    def follow(self, x_m: float, y_m: float, index: int) -> Place:
+    def follow(self, x_m: float, y_m: float, index: int) -> PathPosition:
         """The place of a point that moved a little since it was next to path point ``index``."""
         last = len(self.s_m) - 1
         step = 0
@@ -87,9 +87,9 @@ class Path:
             index += wanted
         s_m = self.s_m[index] + along_m
         bulge_m = 0.5 * self.curvature_1pm[index] * along_m * along_m
-        return Place(index, s_m, dy_m * cos - dx_m * sin - bulge_m, self.heading_at_rad(s_m))
+        return PathPosition(index, s_m, dy_m * cos - dx_m * sin - bulge_m, self.heading_at_rad(s_m))
 
-    def track(self, x_m: float, y_m: float, yaw_rad: float, index: int) -> Place:
+    def track(self, x_m: float, y_m: float, yaw_rad: float, index: int) -> PathPosition:
         """Like ``follow``, but a vehicle that was put far from its path is found again."""
         place = self.follow(x_m, y_m, index)
         return self.find(x_m, y_m, yaw_rad) if abs(place.lateral_m) > LOST_M else place
@@ -99,8 +99,8 @@ def make_path(
     points_m: NDArray[np.float64],
     s_m: NDArray[np.float64],
     lane_width_m: NDArray[np.float64] | None = None,
-    body: Body | None = None,
-) -> Path:
+    body: VehicleGeometry | None = None,
+) -> SampledPath:
     """Smooth a route's way points into a path.
 
     Args:
@@ -120,7 +120,7 @@ def make_path(
         heading_rad, curvature_1pm = _shape(smooth[0], smooth[1])
     every = round(SPACING_M / FINE_M)
     x_m, y_m = smooth[0][::every], smooth[1][::every]
-    return Path(
+    return SampledPath(
         points_m=np.column_stack([x_m, y_m]),
         x_m=x_m.tolist(),
         y_m=y_m.tolist(),
@@ -139,7 +139,7 @@ def _shape(x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[NDArray[
 
 
 def _inwards_m(
-    curvature_1pm: NDArray[np.float64], lane_width_m: NDArray[np.float64], body: Body
+    curvature_1pm: NDArray[np.float64], lane_width_m: NDArray[np.float64], body: VehicleGeometry
 ) -> NDArray[np.float64]:
     """How far to the right of the smoothed way a turning body has to be driven to stay within its lane. All (F,).
 

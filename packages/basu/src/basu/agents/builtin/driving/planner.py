@@ -10,19 +10,19 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.manner import BASIC, Limits, approach_accel_mps2, slowing_distance_m
+from basu.agents.builtin.driving.manner import BASIC, ComfortLimits, approach_accel_mps2, slowing_distance_m
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 COMFORT = BASIC.comfort
-FIRM = Limits(2.0, 2.5)
-HARD = Limits(3.5, 8.0)
+FIRM = ComfortLimits(2.0, 2.5)
+HARD = ComfortLimits(3.5, 8.0)
 FULL_MPS2 = 7.5  # emergency braking, about what tyres give on dry asphalt (0.8 g)
 FULL_JERK_MPS3 = 60.0  # brakes build up within a tenth of a second or two
-HARD_BUT_SMOOTH = Limits(HARD.accel_mps2, FIRM.jerk_mps3)  # ISO 15622:2018, 6.3: 3.5 m/s² and 2.5 m/s³
-RESERVE = Limits(5.0, FULL_JERK_MPS3)  # counted on where another part looks after comfort
+HARD_BUT_SMOOTH = ComfortLimits(HARD.accel_mps2, FIRM.jerk_mps3)  # ISO 15622:2018, 6.3: 3.5 m/s² and 2.5 m/s³
+RESERVE = ComfortLimits(5.0, FULL_JERK_MPS3)  # counted on where another part looks after comfort
 ESCALATE_M = 0.3  # missing a mark by less than this in comfort is better than firm braking
 ARRIVED_M = 0.8  # standing this near before a mark, one stays rather than creep up to it
 STANDING_MPS = 0.005  # the plan has come to rest at its line: far below what `basu.thresholds` calls a standstill
@@ -33,7 +33,7 @@ STRAY_MPS = 0.6  # the reference is never farther than this from the vehicle's o
 class Planner:
     """The reference speed and acceleration, advanced once a step."""
 
-    def __init__(self, dt_s: float, comfort: Limits = COMFORT) -> None:
+    def __init__(self, dt_s: float, comfort: ComfortLimits = COMFORT) -> None:
         self.dt_s = dt_s
         self.comfort = comfort
         self._ladder = (comfort, FIRM, HARD)  # how far up is gone: a restriction's urgency
@@ -82,7 +82,7 @@ class Planner:
         self.speed_mps = self.accel_mps2 = 0.0
         self.holding, self.reason = True, reason
 
-    def _range(self, limits: Limits) -> tuple[float, float]:
+    def _range(self, limits: ComfortLimits) -> tuple[float, float]:
         """The accelerations that one step may lead to."""
         change = limits.jerk_mps3 * self.dt_s
         low = min(self.accel_mps2, max(self.accel_mps2 - change, -limits.accel_mps2))
@@ -116,7 +116,7 @@ class Planner:
                 return self._mildest(restriction, milder, rougher)
         return self._emergency(restriction, low) if restriction.urgency is Urgency.VITAL else low
 
-    def _missed_by_m(self, restriction: Restriction, accel_mps2: float, limits: Limits) -> float:
+    def _missed_by_m(self, restriction: Restriction, accel_mps2: float, limits: ComfortLimits) -> float:
         """By how far the restriction is missed when this step takes ``accel_mps2`` and all later ones brake."""
         speed_mps = self.speed_mps + accel_mps2 * self.dt_s
         if speed_mps <= restriction.speed_mps and accel_mps2 <= 0.0:
@@ -133,7 +133,7 @@ class Planner:
             return self._largest(restriction, low, wanted_mps2, RESERVE)
         return min(self._emergency(restriction, low), low)
 
-    def _largest(self, restriction: Restriction, low: float, high: float, limits: Limits | None = None) -> float:
+    def _largest(self, restriction: Restriction, low: float, high: float, limits: ComfortLimits | None = None) -> float:
         """Bisect between an acceleration that still allows for ``limits`` (comfort) and one that does not."""
         limits = limits or self.comfort
         for _ in range(7):
@@ -144,16 +144,16 @@ class Planner:
                 high = middle
         return low
 
-    def _mildest(self, restriction: Restriction, milder: Limits, rougher: Limits) -> float:
+    def _mildest(self, restriction: Restriction, milder: ComfortLimits, rougher: ComfortLimits) -> float:
         """Brake at once and evenly, no harder than it takes: bisect for the deceleration between two rungs."""
         low, high = milder.accel_mps2, rougher.accel_mps2
         for _ in range(7):
-            middle = Limits(0.5 * (low + high), rougher.jerk_mps3)
+            middle = ComfortLimits(0.5 * (low + high), rougher.jerk_mps3)
             if self._missed_by_m(restriction, self._range(middle)[0], middle) <= 0.0:
                 high = middle.accel_mps2
             else:
                 low = middle.accel_mps2
-        return self._range(Limits(high, rougher.jerk_mps3))[0]
+        return self._range(ComfortLimits(high, rougher.jerk_mps3))[0]
 
     def _emergency(self, restriction: Restriction, hard_mps2: float) -> float:
         """Brake as hard as the way that is really left demands, beyond all comfort."""

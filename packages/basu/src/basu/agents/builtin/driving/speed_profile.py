@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.agents.builtin.driving.manner import Manner
-    from basu.agents.builtin.driving.path import Path
+    from basu.agents.builtin.driving.path import SampledPath
 
 LATERAL_ACCEL_MPS2 = BASIC.lateral_accel_mps2
 LATERAL_JERK_MPS3 = BASIC.lateral_jerk_mps3
@@ -57,7 +57,7 @@ def bend_limit_mps(
 
 
 def make_profile(
-    path: Path, posted_mps: NDArray[np.float64], cap_mps: float, spacing_m: float, manner: Manner = BASIC
+    path: SampledPath, posted_mps: NDArray[np.float64], cap_mps: float, spacing_m: float, manner: Manner = BASIC
 ) -> SpeedProfile:
     """Combine the limits along a path.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.agents.builtin.driving.manner import BASIC, LEFT_FROM_MAJOR_S, ROUNDABOUT_S
-from basu.agents.builtin.driving.path import SPACING_M, Path, make_path
+from basu.agents.builtin.driving.path import SPACING_M, SampledPath, make_path
 from basu.agents.builtin.driving.speed_profile import SpeedProfile, make_profile
 from basu.agents.builtin.rules.gap_acceptance import GapRule, Movement, make_rule, make_zone, movement
 from basu.agents.builtin.rules.right_of_way import StopSign, YieldSign
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from basu.agents.builtin.driving.manner import Manner
-    from basu.agents.builtin.scene import Body
+    from basu.agents.builtin.scene import VehicleGeometry
     from basu.routing import Route
 
 JUNCTION_AFTER_M = 15.0  # the crossing a line belongs to begins within this
@@ -31,7 +31,7 @@ MERGE_M = 10.0  # after a yield line: the stretch on which one joins the circula
 class Task:
     """The path with its speeds, signs, lights and stops, planned once."""
 
-    path: Path
+    path: SampledPath
     profile: SpeedProfile
     stop_signs: tuple[StopSign, ...]
     yield_signs: tuple[YieldSign, ...]
@@ -39,7 +39,7 @@ class Task:
     stops: tuple[ServiceStop, ...]
 
 
-def make_task(route: Route, body: Body, cap_mps: float, manner: Manner = BASIC) -> Task:
+def make_task(route: Route, body: VehicleGeometry, cap_mps: float, manner: Manner = BASIC) -> Task:
     """Plan the task of a route for a vehicle that drives ``cap_mps`` at most."""
     path = make_path(route.points_m, route.s_m, route.lane_width_m, body)
     nearest = np.searchsorted(route.s_m, path.s_m).clip(0, len(route.s_m) - 1)
@@ -61,9 +61,9 @@ class _Lines:
     """Makes the lines at which one lets others go."""
 
     route: Route
-    path: Path
+    path: SampledPath
     profile: SpeedProfile
-    body: Body
+    body: VehicleGeometry
     manner: Manner
 
     @property

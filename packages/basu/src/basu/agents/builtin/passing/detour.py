@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.driving.path import SPACING_M, Path
+from basu.agents.builtin.driving.path import SPACING_M, SampledPath
 from basu.agents.builtin.driving.speed_profile import bend_limit_mps
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Extent(NamedTuple):
 class Detour(NamedTuple):
     """A shifted path; outside of its extent it is the path it was made from."""
 
-    path: Path
+    path: SampledPath
     extent: Extent
     offset_m: float  # when all the way aside, positive to the right
     speed_mps: float  # how fast it may be driven
@@ -49,7 +49,7 @@ def tightest_swing_m(offset_m: float) -> float:
 
 
 def make_detour(
-    path: Path, extent: Extent, offset_m: float, manner: Manner, top_mps: float, begin_m: float = 0.0
+    path: SampledPath, extent: Extent, offset_m: float, manner: Manner, top_mps: float, begin_m: float = 0.0
 ) -> Detour:
     """Shift a path to the right by ``offset_m`` (negative: to the left), beginning ``begin_m`` beside it.
 
@@ -74,7 +74,7 @@ def make_detour(
     slow_mps = bend_limit_mps(
         bent_1pm, SPACING_M, manner.lateral_accel_mps2, JERK_SHARE * manner.lateral_jerk_mps3
     ).min()
-    shifted = Path(
+    shifted = SampledPath(
         points_m=points_m,
         x_m=_replaced(path.x_m, first, points_m[first:end, 0]),
         y_m=_replaced(path.y_m, first, points_m[first:end, 1]),

@@ -1,4 +1,4 @@
-"""`Standing` finds the next `Block` of standing actors in the lane: its extent, standing time, least waiting time."""
+"""`Standing` finds the next `StandingRow` of standing actors in the lane: extent, standing time, least waiting time."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.rules.corridor import Strip
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
-from basu.agents.builtin.scene import Kind
+from basu.agents.builtin.scene import ActorKind
 from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.builtin.driving.path import Path, Place
-    from basu.agents.builtin.passing.road import Road
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
+    from basu.agents.builtin.passing.road import RoadBesidePath
     from basu.agents.builtin.rules.corridor import Footprint
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 
 LOOK_M = 65.0  # beyond what a strip reaches ahead
@@ -27,7 +27,7 @@ QUEUE_PATIENCE_S = 60.0  # … unless it stands for so long
 DROVE_FACTOR = 4.0  # a vehicle seen driving has a driver, and gets so much more time
 
 
-class Block(NamedTuple):
+class StandingRow(NamedTuple):
     """Bodies that stand in the lane close behind one another: their extent along and across the path, m."""
 
     from_s_m: float
@@ -43,12 +43,14 @@ class Block(NamedTuple):
 class Standing:
     """Remembers since when other actors stand, and which of them were seen driving."""
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: VehicleGeometry) -> None:
         self._body = body
         self._since_s: dict[int, float] = {}
         self._drove: set[int] = set()
 
-    def block(self, path: Path, road: Road, ego: Ego, place: Place, others: Sequence[Other]) -> Block | None:
+    def block(
+        self, path: SampledPath, road: RoadBesidePath, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other]
+    ) -> StandingRow | None:
         """The next block ahead on a path; None where nothing stands there, or what stands is on foot."""
         self._remember(ego.time_s, others)
         others = [o for o in others if o.id in self._since_s and math.hypot(o.x_m - ego.x_m, o.y_m - ego.y_m) < LOOK_M]
@@ -66,12 +68,12 @@ class Standing:
                 seen.append((footprint, other))
         seen.sort(key=lambda one: (one[0].from_s_m, one[1].id))
         together = _joined(seen)
-        if not together or any(other.kind is Kind.WALKER for _, other in together):
+        if not together or any(other.kind is ActorKind.WALKER for _, other in together):
             return None
         to_s_m = max(footprint.to_s_m for footprint, _ in together)
         drove = any(other.id in self._drove for _, other in together)
-        may_queue = any(other.kind is Kind.VEHICLE for _, other in together)
-        return Block(
+        may_queue = any(other.kind is ActorKind.VEHICLE for _, other in together)
+        return StandingRow(
             from_s_m=together[0][0].from_s_m,
             to_s_m=to_s_m,
             left_m=min(footprint.left_m for footprint, _ in together),

@@ -16,16 +16,16 @@ import numpy as np
 from basu.agents.builtin.rules.corridor import Strip
 from basu.agents.builtin.rules.gap_acceptance import START_S, time_to_cover_s
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
-from basu.agents.builtin.scene import Kind
+from basu.agents.builtin.scene import ActorKind
 from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
     from basu.agents.builtin.passing.detour import Detour
-    from basu.agents.builtin.passing.road import Road
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.passing.road import RoadBesidePath
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 ONCOMING_RAD, SAME_WAY_RAD = math.radians(120.0), math.radians(60.0)
 OTHERS_ACCEL_MPS2 = 1.5  # acceleration of an oncoming vehicle
@@ -45,14 +45,22 @@ class Need(NamedTuple):
     sight_m: float  # how far from the vehicle others are seen
 
 
-def time_needed_s(ego: Ego, place: Place, body: Body, need: Need) -> float:
+def time_needed_s(ego: DrivenVehicle, place: PathPosition, body: VehicleGeometry, need: Need) -> float:
     """Until the rear bumper is back in the own lane."""
     way_m = need.detour.extent.to_s_m + body.rear_m - place.s_m
     start_s = START_S if ego.speed_mps < 1.0 else 0.0
     return start_s + time_to_cover_s(way_m, ego.speed_mps, need.accel_mps2, need.detour.speed_mps)
 
 
-def is_free(path: Path, road: Road, body: Body, ego: Ego, place: Place, others: Sequence[Other], need: Need) -> bool:
+def is_free(
+    path: SampledPath,
+    road: RoadBesidePath,
+    body: VehicleGeometry,
+    ego: DrivenVehicle,
+    place: PathPosition,
+    others: Sequence[Other],
+    need: Need,
+) -> bool:
     """Whether one may go round now; ``path`` is the middle of the own lane, ``place`` the vehicle's beside it."""
     extent = need.detour.extent
     within_s = time_needed_s(ego, place, body, need) + need.margin_s
@@ -66,12 +74,12 @@ def is_free(path: Path, road: Road, body: Body, ego: Ego, place: Place, others: 
         if other.speed_mps < STANDING_TRAFFIC_MPS:
             if _stands_in_it(strip, other, body, extent.from_s_m, extent.to_s_m):
                 return False
-        elif other.kind is Kind.VEHICLE and _comes(path, road, place, other, need, within_s):
+        elif other.kind is ActorKind.VEHICLE and _comes(path, road, place, other, need, within_s):
             return False
     return True
 
 
-def _stands_in_it(strip: Strip, other: Other, body: Body, from_s_m: float, to_s_m: float) -> bool:
+def _stands_in_it(strip: Strip, other: Other, body: VehicleGeometry, from_s_m: float, to_s_m: float) -> bool:
     """Whether a standing body blocks the detour."""
     if strip.away_m([other])[0] > other.half_length_m + other.half_width_m + body.half_width_m + SIDE_MARGIN_M:
         return False
@@ -84,7 +92,9 @@ def _stands_in_it(strip: Strip, other: Other, body: Body, from_s_m: float, to_s_
     )
 
 
-def _comes(path: Path, road: Road, place: Place, other: Other, need: Need, within_s: float) -> bool:
+def _comes(
+    path: SampledPath, road: RoadBesidePath, place: PathPosition, other: Other, need: Need, within_s: float
+) -> bool:
     """Whether a moving vehicle will be where we need to be."""
     extent = need.detour.extent
     street_end_s_m = min(road.next_junction_s_m(extent.to_s_m), extent.to_s_m + need.sight_m)
@@ -110,7 +120,7 @@ def _comes(path: Path, road: Road, place: Place, other: Other, need: Need, withi
     return extent.from_s_m < s_m < extent.to_s_m
 
 
-def _beside(path: Path, place: Place, other: Other, until_s_m: float) -> tuple[float, float, float]:
+def _beside(path: SampledPath, place: PathPosition, other: Other, until_s_m: float) -> tuple[float, float, float]:
     """Arc length, distance to the right and heading of the path where it passes a body, from behind us to far ahead.
 
     Beyond ``until_s_m``, where the path may turn off, the street is taken to lead straight on.

@@ -10,16 +10,16 @@ import math
 from typing import TYPE_CHECKING
 
 from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
-from basu.agents.builtin.scene import Kind, Restriction, Urgency
+from basu.agents.builtin.scene import ActorKind, Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.agents.builtin.driving.manner import Manner
-    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
     from basu.agents.builtin.passing.detour import Detour
-    from basu.agents.builtin.passing.road import Road
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.passing.road import RoadBesidePath
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 
 LEAST_MPS = 2.0  # a vehicle that hardly moves has no tailgater
@@ -32,13 +32,13 @@ FORGOTTEN_S = 3.0  # … and is over after so long
 class Tailgating:
     """Whether an actor follows at less than ``near_s`` seconds; 0 switches the check off."""
 
-    def __init__(self, body: Body, near_s: float) -> None:
+    def __init__(self, body: VehicleGeometry, near_s: float) -> None:
         self.is_on = False
         self._body = body
         self._near_s = near_s
         self._changed_s: float | None = None
 
-    def step(self, ego: Ego, path: Path, place: Place, others: Sequence[Other]) -> bool:
+    def step(self, ego: DrivenVehicle, path: SampledPath, place: PathPosition, others: Sequence[Other]) -> bool:
         """Look behind; the answer changes only after a while."""
         seen = (
             self._near_s > 0.0 and ego.speed_mps > LEAST_MPS and any(self._is_one(ego, path, place, o) for o in others)
@@ -51,9 +51,9 @@ class Tailgating:
             self.is_on, self._changed_s = seen, None
         return self.is_on
 
-    def _is_one(self, ego: Ego, path: Path, place: Place, other: Other) -> bool:
+    def _is_one(self, ego: DrivenVehicle, path: SampledPath, place: PathPosition, other: Other) -> bool:
         """Whether one other follows too closely in our lane."""
-        if other.kind is not Kind.VEHICLE or other.speed_mps < LEAST_MPS:
+        if other.kind is not ActorKind.VEHICLE or other.speed_mps < LEAST_MPS:
             return False
         dx_m, dy_m = other.x_m - ego.x_m, other.y_m - ego.y_m
         if dx_m * dx_m + dy_m * dy_m > TAILGATER_WITHIN_M * TAILGATER_WITHIN_M:
@@ -79,11 +79,13 @@ SLOWEST_MPS = 3.0  # changes of lane are planned for this speed at least
 class PullingOver:
     """The state of making room; ``detour`` is what to drive instead of the path, None while one keeps to it."""
 
-    def __init__(self, path: Path, road: Road, body: Body, manner: Manner) -> None:
+    def __init__(self, path: SampledPath, road: RoadBesidePath, body: VehicleGeometry, manner: Manner) -> None:
         self.detour: Detour | None = None
         self._path, self._road, self._body, self._manner = path, road, body, manner
 
-    def step(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
+    def step(
+        self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other], *, tailgated: bool
+    ) -> list[Restriction]:
         """Begin, go on, or come back; ``place`` is beside the task's own path."""
         if self.detour is None:
             self.detour = self._plan(ego, place, others) if tailgated else None
@@ -106,7 +108,7 @@ class PullingOver:
             self.detour = make_detour(self._path, drawn_out, offset_m, self._manner, self.detour.speed_mps, offset_m)
         return []
 
-    def _plan(self, ego: Ego, place: Place, others: Sequence[Other]) -> Detour | None:
+    def _plan(self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other]) -> Detour | None:
         """The way over and back, None where there is none."""
         offset_m = self._road.right_lane_m[place.near]
         if offset_m <= 0.0:
@@ -128,7 +130,7 @@ class PullingOver:
         ends = extent.to_s_m > path.end_s_m
         return beside and not marks and not ends and not road.meets_junction(extent.from_s_m, extent.to_s_m)
 
-    def _is_clear(self, place: Place, others: Sequence[Other], lane_m: float, half_m: float) -> bool:
+    def _is_clear(self, place: PathPosition, others: Sequence[Other], lane_m: float, half_m: float) -> bool:
         """Whether no actor is near in the lane with its middle ``lane_m`` to the right of ours."""
         for other in others:
             there = self._path.follow(other.x_m, other.y_m, place.near)

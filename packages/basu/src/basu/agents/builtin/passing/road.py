@@ -1,4 +1,4 @@
-"""`Road`: lane widths, free width to the left, speed limits, junctions, stop lines and service stops along a path."""
+"""`RoadBesidePath`: lane widths, free width to the left, limits, junctions, stop lines and stops along a path."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.agents.builtin.driving.path import Path
+    from basu.agents.builtin.driving.path import SampledPath
     from basu.routing import Route
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Road:
+class RoadBesidePath:
     """N values beside a path's points, and places along it; m, m/s."""
 
     half_lane_m: list[float]
@@ -30,7 +30,7 @@ class Road:
     lines_s_m: tuple[float, ...]  # stop and yield lines, lights: where one may stand in a queue
     stops_s_m: tuple[float, ...]  # service stops
 
-    def least_left_room_m(self, path: Path, from_s_m: float, to_s_m: float) -> float:
+    def least_left_room_m(self, path: SampledPath, from_s_m: float, to_s_m: float) -> float:
         """The narrowest room on a stretch."""
         return min(self.left_room_m[path.index_at(from_s_m) : path.index_at(to_s_m) + 1])
 
@@ -48,8 +48,12 @@ class Road:
 
 
 def make_road(
-    route: Route, path: Path, left_width_m: NDArray[np.float64], right_lane_m: NDArray[np.float64], unposted_mps: float
-) -> Road:
+    route: Route,
+    path: SampledPath,
+    left_width_m: NDArray[np.float64],
+    right_lane_m: NDArray[np.float64],
+    unposted_mps: float,
+) -> RoadBesidePath:
     """Lay what is known of a route's points beside a path's.
 
     Args:
@@ -63,7 +67,7 @@ def make_road(
     half_m = route.lane_width_m / 2.0
     posted_mps = np.where(np.isnan(route.speed_limit_mps), unposted_mps, route.speed_limit_mps)
     signs = {ControlKind.STOP_SIGN, ControlKind.YIELD_SIGN, ControlKind.TRAFFIC_LIGHT}
-    return Road(
+    return RoadBesidePath(
         half_lane_m=half_m[nearest].tolist(),
         left_room_m=np.where(route.is_junction, 0.0, half_m + left_width_m)[nearest].tolist(),
         right_lane_m=np.where(route.is_junction, 0.0, right_lane_m)[nearest].tolist(),

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
     from basu.agents.builtin.scene import Other
 
 BEHIND_M = 6.0  # the strip begins this far behind the vehicle's origin …
@@ -36,7 +36,7 @@ class Footprint(NamedTuple):
 class Strip:
     """The part of the path near the vehicle, cut out once a step."""
 
-    def __init__(self, path: Path, place: Place) -> None:
+    def __init__(self, path: SampledPath, place: PathPosition) -> None:
         self._first = path.index_at(place.s_m - BEHIND_M)
         end = path.index_at(place.s_m + AHEAD_M) + 1
         self._points_m = path.points_m[self._first : end]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.agents.builtin.driving.manner import LEFT_FROM_MINOR_S, RIGHT_FROM_MINOR_S, THROUGH_FROM_MINOR_S
-from basu.agents.builtin.scene import Kind
+from basu.agents.builtin.scene import ActorKind
 from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.agents.builtin.driving.manner import Gaps, Manner
-    from basu.agents.builtin.driving.path import Path
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.driving.path import SampledPath
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 
 START_S = 1.5  # from the decision until the vehicle really moves, with a margin
@@ -39,7 +39,7 @@ class Movement(enum.Enum):
     RIGHT = RIGHT_FROM_MINOR_S
 
 
-def movement(path: Path, from_s_m: float, to_s_m: float) -> Movement:
+def movement(path: SampledPath, from_s_m: float, to_s_m: float) -> Movement:
     """What the path does between two arc lengths."""
     turn_rad = path.heading_at_rad(to_s_m) - path.heading_at_rad(from_s_m)
     if abs(turn_rad) < TURN_RAD:
@@ -98,7 +98,7 @@ class Zone(NamedTuple):
     half_width_m: float  # of the vehicle that is to drive over it
 
 
-def make_zone(path: Path, from_s_m: float, to_s_m: float, body: Body) -> Zone:
+def make_zone(path: SampledPath, from_s_m: float, to_s_m: float, body: VehicleGeometry) -> Zone:
     """The path's points between two arc lengths."""
     first, end = path.index_at(from_s_m), path.index_at(to_s_m) + 1
     return Zone(path.points_m[first:end:2], max(to_s_m - from_s_m, 0.0), body.half_width_m)
@@ -116,12 +116,12 @@ def predicted_m(other: Other, until_s: float) -> NDArray[np.float64]:
     return np.column_stack([x_m, y_m])
 
 
-def crossing(zone: Zone, ego: Ego, others: Iterable[Other], within_s: float) -> frozenset[int]:
+def crossing(zone: Zone, ego: DrivenVehicle, others: Iterable[Other], within_s: float) -> frozenset[int]:
     """Ids of the moving vehicles that are on the zone, or will be before ``within_s`` are over."""
     return frozenset(
         other.id
         for other in others
-        if other.kind is Kind.VEHICLE
+        if other.kind is ActorKind.VEHICLE
         and other.speed_mps > STANDING_TRAFFIC_MPS
         and _may_reach(zone, other, within_s)
         and not _follows(ego, other)
@@ -129,12 +129,12 @@ def crossing(zone: Zone, ego: Ego, others: Iterable[Other], within_s: float) -> 
     )
 
 
-def waiting(zone: Zone, ego: Ego, others: Iterable[Other]) -> frozenset[int]:
+def waiting(zone: Zone, ego: DrivenVehicle, others: Iterable[Other]) -> frozenset[int]:
     """Ids of the vehicles that stand beside the zone and point at it."""
     return frozenset(
         other.id
         for other in others
-        if other.kind is Kind.VEHICLE
+        if other.kind is ActorKind.VEHICLE
         and other.speed_mps <= STANDING_TRAFFIC_MPS
         and not _follows(ego, other)
         and float(_away_m(zone, np.array([[other.x_m, other.y_m]])).min()) <= NEARBY_M + other.half_length_m
@@ -171,7 +171,7 @@ def _touches(zone: Zone, points_m: NDArray[np.float64], other: Other) -> bool:
     return bool(_away_m(zone, points_m).min() < zone.half_width_m + other.half_width_m + CLEARANCE_M)
 
 
-def _follows(ego: Ego, other: Other) -> bool:
+def _follows(ego: DrivenVehicle, other: Other) -> bool:
     """Whether the other comes behind on our own way, where it cannot cross before us."""
     bearing_rad = math.atan2(other.y_m - ego.y_m, other.x_m - ego.x_m)
     astern = abs(math.remainder(bearing_rad - ego.yaw_rad, math.tau)) > ASTERN_RAD

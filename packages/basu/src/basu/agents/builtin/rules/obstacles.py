@@ -17,16 +17,16 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.rules.corridor import AHEAD_M, Strip
-from basu.agents.builtin.scene import Kind, Restriction, Urgency
+from basu.agents.builtin.scene import ActorKind, Restriction, Urgency
 from basu.thresholds import IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from basu.agents.builtin.driving.manner import Following
-    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.driving.path import PathPosition, SampledPath
     from basu.agents.builtin.rules.corridor import Footprint
-    from basu.agents.builtin.scene import Body, Ego, Other
+    from basu.agents.builtin.scene import DrivenVehicle, Other, VehicleGeometry
 
 
 LEADER_LIMIT_MPS2 = 8.0  # the most that a leader brakes: a car on dry asphalt, 0.8 g
@@ -64,10 +64,10 @@ VEHICLE_TIMES_S = (0.5, 1.0, 1.5)
 ONCOMING_RAD = math.radians(120.0)  # a vehicle that comes towards us in its own lane keeps to it
 
 
-class Sight(NamedTuple):
+class LookAhead(NamedTuple):
     """What one step's look ahead is made with."""
 
-    ego: Ego
+    ego: DrivenVehicle
     front_s_m: float
     half_width_m: float
     body_length_m: float
@@ -82,7 +82,7 @@ class Obstacles:
         follow_mps2: after a step, the most acceleration that keeps the distance to a moving leader; inf without one.
     """
 
-    def __init__(self, path: Path, body: Body, following: Following | None = None) -> None:
+    def __init__(self, path: SampledPath, body: VehicleGeometry, following: Following | None = None) -> None:
         """Without ``following``, leaders are kept off like everything else: at the distance comfort stops in."""
         self.path = path
         self.follow_mps2 = math.inf
@@ -90,7 +90,7 @@ class Obstacles:
         self._following = following
         self._waited_for: frozenset[int] = frozenset()
 
-    def step(self, ego: Ego, place: Place, others: Sequence[Other]) -> list[Restriction]:
+    def step(self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other]) -> list[Restriction]:
         """What the others ask for now."""
         self.follow_mps2 = math.inf
         near = [other for other in others if self._is_near(ego, other)]
@@ -98,7 +98,7 @@ class Obstacles:
             self._waited_for = frozenset()
             return []
         body = self._body
-        sight = Sight(
+        sight = LookAhead(
             ego,
             place.s_m + body.front_m,
             body.half_width_m + SIDE_MARGIN_M,
@@ -119,13 +119,13 @@ class Obstacles:
         self._waited_for = frozenset(waited_for)
         return found
 
-    def _in_the_way(self, sight: Sight, now: Footprint, other: Other) -> Iterable[Restriction]:
+    def _in_the_way(self, sight: LookAhead, now: Footprint, other: Other) -> Iterable[Restriction]:
         """What a body asks for that reaches into the strip: nothing beside or behind us, else to follow or to stop."""
         gap_m = now.from_s_m - sight.front_s_m
         if gap_m < -2.0 * CONTACT_M:
             return
         ahead_mps = other.velocity_x_mps * math.cos(now.heading_rad) + other.velocity_y_mps * math.sin(now.heading_rad)
-        if self._following is not None and other.kind is Kind.VEHICLE and ahead_mps > IN_MOTION_MPS:
+        if self._following is not None and other.kind is ActorKind.VEHICLE and ahead_mps > IN_MOTION_MPS:
             following = follow_mps2(gap_m, max(sight.ego.speed_mps, 0.0), ahead_mps, self._following)
             self.follow_mps2 = min(self.follow_mps2, following)
             yield floor(gap_m, ahead_mps)
@@ -137,22 +137,22 @@ class Obstacles:
             yield _stopping_for(gap_m, ahead_mps, other)
 
     @staticmethod
-    def _is_near(ego: Ego, other: Other) -> bool:
+    def _is_near(ego: DrivenVehicle, other: Other) -> bool:
         """A cheap first look: neither far away nor well behind."""
         dx_m, dy_m = other.x_m - ego.x_m, other.y_m - ego.y_m
         reach_m = AHEAD_M + other.half_length_m
         return dx_m * dx_m + dy_m * dy_m < reach_m * reach_m
 
-    def _about_to_step_in(self, sight: Sight, other: Other) -> Restriction | None:
+    def _about_to_step_in(self, sight: LookAhead, other: Other) -> Restriction | None:
         """The restriction for an actor that is not in the way yet and will be on our arrival."""
         if other.speed_mps < SLOWEST_MPS:
             return None
-        if other.kind is Kind.VEHICLE and sight.strip.leads_against(other.yaw_rad, ONCOMING_RAD):
+        if other.kind is ActorKind.VEHICLE and sight.strip.leads_against(other.yaw_rad, ONCOMING_RAD):
             return None  # wherever it comes to be, it keeps to its own lane
-        times_s = WALKER_TIMES_S if other.kind is Kind.WALKER else VEHICLE_TIMES_S
+        times_s = WALKER_TIMES_S if other.kind is ActorKind.WALKER else VEHICLE_TIMES_S
         seen = [(after_s, sight.strip.footprint(other, after_s)) for after_s in times_s]
         inside = [(t, f) for t, f in seen if f is not None and f.overlaps(sight.half_width_m)]
-        if not inside or (other.kind is Kind.VEHICLE and _is_oncoming(other, inside[0][1])):
+        if not inside or (other.kind is ActorKind.VEHICLE and _is_oncoming(other, inside[0][1])):
             return None
         enters_s, leaves_s = inside[0][0], inside[-1][0] + 0.5
         left_m = min(f.from_s_m for _, f in inside) - sight.front_s_m
@@ -169,7 +169,7 @@ class Obstacles:
         )
 
 
-def _stays(sight: Sight, other: Other, gap_m: float, ahead_mps: float) -> bool:
+def _stays(sight: LookAhead, other: Other, gap_m: float, ahead_mps: float) -> bool:
     """Whether an oncoming actor will still reach into the strip when we meet, or in a moment if that is later.
 
     An actor that turns into the other lane cuts its corner, and is out of our way by then.
@@ -195,7 +195,7 @@ def _stopping_for(gap_m: float, ahead_mps: float, other: Other) -> Restriction:
 
 def _reach_m(other: Other) -> float:
     """How far from its centre a body is felt: its own size, and where it gets within the time that is looked ahead."""
-    times_s = WALKER_TIMES_S if other.kind is Kind.WALKER else VEHICLE_TIMES_S
+    times_s = WALKER_TIMES_S if other.kind is ActorKind.WALKER else VEHICLE_TIMES_S
     return other.half_length_m + other.half_width_m + other.speed_mps * times_s[-1]
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.agents.builtin.rules.gap_acceptance import GapRule, Zone
-    from basu.agents.builtin.scene import Ego, Other, Restriction
+    from basu.agents.builtin.scene import DrivenVehicle, Other, Restriction
 
 
 REST_S = 1.2  # how long one stands at least
@@ -57,7 +57,7 @@ class StopSign:
         self._rest_since_s = 0.0
         self._before_us: frozenset[int] = frozenset()
 
-    def step(self, ego: Ego, front_s_m: float, others: Sequence[Other]) -> Restriction | None:
+    def step(self, ego: DrivenVehicle, front_s_m: float, others: Sequence[Other]) -> Restriction | None:
         """What the sign asks for now; None once it is done with."""
         if self.phase is StopPhase.APPROACHING and front_s_m > self.line_s_m + BEYOND_M:
             self.phase = StopPhase.PASSED
@@ -69,7 +69,7 @@ class StopSign:
             self.phase = StopPhase.PASSED
         return None if self.phase is StopPhase.PASSED else hold_at(self.line_s_m, front_s_m, "stop sign")
 
-    def _may_go(self, ego: Ego, others: Sequence[Other]) -> bool:
+    def _may_go(self, ego: DrivenVehicle, others: Sequence[Other]) -> bool:
         """Whether the vehicle has rested and no actor with a better right is in the way."""
         rested_s = ego.time_s - self._rest_since_s
         if rested_s < REST_S - 1e-6:
@@ -132,7 +132,7 @@ class YieldSign:
         self._arrived_at_s: float | None = None
         self._clear_since_s: float | None = None
 
-    def step(self, ego: Ego, front_s_m: float, others: Sequence[Other]) -> Restriction | None:
+    def step(self, ego: DrivenVehicle, front_s_m: float, others: Sequence[Other]) -> Restriction | None:
         """What the sign asks for now; None where one may go on."""
         left_m = self.line_s_m - front_s_m
         if self.phase is YieldPhase.PASSED or left_m > LOOK_M:
@@ -160,7 +160,7 @@ class YieldSign:
         heading_rad = self._oncoming_to_rad
         return [o for o in others if abs(math.remainder(o.yaw_rad - heading_rad, math.tau)) > ONCOMING_RAD]
 
-    def _within_s(self, ego: Ego, left_m: float) -> float:
+    def _within_s(self, ego: DrivenVehicle, left_m: float) -> float:
         """How long the crossing has to stay free, in s."""
         inside_m = left_m + self._zone.length_m + self._body_length_m
         if self._rule is None:

@@ -12,7 +12,7 @@ from basu.metrics.path_following import serves
 from basu.thresholds import STANDSTILL_MPS
 
 if TYPE_CHECKING:
-    from basu.agents.builtin.scene import Ego
+    from basu.agents.builtin.scene import DrivenVehicle
 
 
 BEFORE_LINE_M = 0.7  # where the front bumper comes to rest
@@ -75,7 +75,7 @@ class TrafficLight:
 DWELL_S = 10.0
 
 
-class Phase(enum.Enum):
+class ServicePhase(enum.Enum):
     """Where a driver is with one service stop."""
 
     APPROACHING = "approaching"
@@ -92,18 +92,18 @@ class ServiceStop:
     def __init__(self, s_m: float, name: str, dwell_s: float = DWELL_S) -> None:
         self.s_m = s_m
         self.name = name
-        self.phase = Phase.APPROACHING
+        self.phase = ServicePhase.APPROACHING
         self._dwell_s = dwell_s
         self._halted_at_s = 0.0
 
-    def step(self, ego: Ego, ego_s_m: float) -> Restriction | None:
+    def step(self, ego: DrivenVehicle, ego_s_m: float) -> Restriction | None:
         """What the stop asks for now; None once it has been served."""
         left_m = self.s_m - ego_s_m
         stands = abs(ego.speed_mps) < STANDSTILL_MPS  # the doors open at a standstill, below what the metric calls rest
-        if self.phase is Phase.APPROACHING and stands and serves(left_m, ego.speed_mps):
-            self.phase, self._halted_at_s = Phase.DWELLING, ego.time_s
-        if self.phase is Phase.DWELLING and ego.time_s - self._halted_at_s >= self._dwell_s - 1e-6:
-            self.phase = Phase.LEFT
-        if self.phase is Phase.LEFT:
+        if self.phase is ServicePhase.APPROACHING and stands and serves(left_m, ego.speed_mps):
+            self.phase, self._halted_at_s = ServicePhase.DWELLING, ego.time_s
+        if self.phase is ServicePhase.DWELLING and ego.time_s - self._halted_at_s >= self._dwell_s - 1e-6:
+            self.phase = ServicePhase.LEFT
+        if self.phase is ServicePhase.LEFT:
             return None
         return Restriction(left_m, 0.0, Urgency.GENTLE, f"service stop {self.name}")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from markupsafe import Markup
 
-    from basu.output.report.events import Event
+    from basu.output.report.events import MarkedEvent
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
@@ -36,10 +36,10 @@ SIGNS = {  # corners of a sign's outline, and the direction of the first as seen
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded size
 
 
-def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
+def evidence(history: History, felt: Signals, found: Sequence[MarkedEvent]) -> Markup:
     """Return the infractions, and what is not scored, each one to be opened and linked to."""
-    scored: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
-    rest: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
+    scored: list[tuple[MarkedEvent, Element, list[Element], list[tuple[str, str]]]] = []
+    rest: list[tuple[MarkedEvent, Element, list[Element], list[tuple[str, str]]]] = []
     so_far = 1.0
     for order, event in enumerate(found):
         so_far *= 1.0 if event.factor is None else event.factor
@@ -50,7 +50,7 @@ def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     return render("templates/evidence.j2", sections=sections)
 
 
-def close_up(history: History, event: Event) -> Element:
+def close_up(history: History, event: MarkedEvent) -> Element:
     """Return the place from above: the vehicle under test, dark, and the actors near it in that tick."""
     x_m, y_m = event.x_m, event.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
@@ -121,7 +121,7 @@ def _body(
     return e("polygon", points=" ".join(places), class_=style)
 
 
-def _speed(felt: Signals, event: Event) -> Element:
+def _speed(felt: Signals, event: MarkedEvent) -> Element:
     """Speed and limit around the moment."""
     near = np.flatnonzero(np.abs(felt.t_s - event.t_s) <= AROUND_S)
     curves: Sequence[Curve] = (
@@ -132,7 +132,7 @@ def _speed(felt: Signals, event: Event) -> Element:
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
-def _facts(event: Event, so_far: float) -> list[tuple[str, str]]:
+def _facts(event: MarkedEvent, so_far: float) -> list[tuple[str, str]]:
     """Return the figures, each with its name."""
     return [
         ("time", f"{event.t_s:.2f} s, tick {event.tick}"),

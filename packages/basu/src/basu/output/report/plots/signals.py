@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.events import Event
+    from basu.output.report.events import MarkedEvent
     from basu.records.history import History
 
 
@@ -70,7 +70,7 @@ RECOVERABLE = (
 FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
 
 
-def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
+def charts(history: History, felt: Signals, found: Sequence[MarkedEvent]) -> Element:
     """Return all charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
@@ -127,6 +127,6 @@ def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Elemen
     return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
 
 
-def _flags(found: Iterable[Event]) -> list[Flag]:
+def _flags(found: Iterable[MarkedEvent]) -> list[Flag]:
     """Flags that open the evidence."""
     return [Flag(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.metrics.display import Moment
+    from basu.metrics.display import TimedMark
     from basu.metrics.result import Result
-    from basu.output.report.events import Event
+    from basu.output.report.events import MarkedEvent
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
 CROWDED, LOWER_PX = 0.02, 14  # marks nearer than this share of the time are shown lower, by so much
 
 
-def timeline(history: History, felt: Signals, result: Result, found: Sequence[Event]) -> Element:
+def timeline(history: History, felt: Signals, result: Result, found: Sequence[MarkedEvent]) -> Element:
     """Return all rows: the events ``found``, a row of each metric that has one, and where the vehicle stood."""
     begin_s, end_s = float(felt.t_s[0]), max(float(felt.t_s[-1]), float(felt.t_s[0]) + 1e-3)
     of_metrics = [
@@ -48,7 +48,7 @@ def timeline(history: History, felt: Signals, result: Result, found: Sequence[Ev
     return body
 
 
-def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element]:
+def _marks(found: Sequence[MarkedEvent], begin_s: float, end_s: float) -> list[Element]:
     """Return a mark for each, a link to its evidence."""
     placed, last_share, height = [], -1.0, 0
     for event in sorted(found, key=lambda event: event.t_s):
@@ -59,7 +59,7 @@ def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element
     return placed
 
 
-def _moment(moment: Moment, begin_s: float, end_s: float) -> Element:
+def _moment(moment: TimedMark, begin_s: float, end_s: float) -> Element:
     """Return a mark, or a bar; the shortest bar can still be seen."""
     left = f"left:{share(moment.begin_s, begin_s, end_s)}"
     if moment.end_s is None:

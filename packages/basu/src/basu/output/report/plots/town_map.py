@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.events import Event
+    from basu.output.report.events import MarkedEvent
     from basu.output.report.streets import Bounds, Line
     from basu.records.history import History
 
@@ -33,7 +33,7 @@ CROWDED = 0.022  # marks nearer than this share of the map's larger side are sta
 STACKED_PX, SERVICE_PX = 22, 17
 
 
-def town_map(history: History, streets: Sequence[Line], found: Sequence[Event]) -> Element:
+def town_map(history: History, streets: Sequence[Line], found: Sequence[MarkedEvent]) -> Element:
     """Return the whole map; its lines have ids, so that close-ups use them again."""
     bounds = bounds_of(history)
     frame = e("div", class_="map", id="map", style=box(bounds))
@@ -148,7 +148,7 @@ def _signs(history: History, bounds: Bounds) -> list[Element]:
     ]
 
 
-def _marks(found: Sequence[Event], bounds: Bounds) -> list[Element]:
+def _marks(found: Sequence[MarkedEvent], bounds: Bounds) -> list[Element]:
     """Return a mark for each event, those at one place stacked, each a link to its evidence."""
     heights = _stacked([(event.x_m, event.y_m) for event in found], bounds)
     return [

@@ -25,7 +25,7 @@ MOST_TOLD = 6  # cases of an agent with a sentence on their end
 GREEN, RED, YELLOW, BOLD, DIM, PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[1m", "\x1b[2m", "\x1b[0m"
 
 
-class Cell(NamedTuple):
+class TextCell(NamedTuple):
     """What one agent made of a row, as text: the parts are set below each other."""
 
     share: str  # 2/3
@@ -76,18 +76,18 @@ def _side_by_side(matrix: dict[str, Any], agents: Sequence[str]) -> list[list[st
     return tables
 
 
-def _columns(matrix: dict[str, Any], agents: Sequence[str]) -> dict[str, list[Cell]]:
+def _columns(matrix: dict[str, Any], agents: Sequence[str]) -> dict[str, list[TextCell]]:
     """The cells of each agent in the order of the table's rows: of every scenario, and of all cases at the end."""
     rows = [row.cases for block in blocks(matrix) for row in block.rows]
     return {agent: [_cell(tally(cases, agent)) for cases in (*rows, matrix["cases"])] for agent in agents}
 
 
-def _cell(found: Tally) -> Cell:
+def _cell(found: Tally) -> TextCell:
     """Return the text of a cell."""
     signs = ((found.agent_faults, "!"), (found.absent, "○"), (found.unjudged, "?"))
     marks = [f"{count}{sign}" for count, sign in signs if count]
     all_passed = found.passed == found.judged
-    return Cell(
+    return TextCell(
         share=f"{found.passed}/{found.judged}" if found.judged else "-",
         distance=found.narrowest,
         time="" if found.ttc_s is None else f"{found.ttc_s:.1f} s",
@@ -96,7 +96,7 @@ def _cell(found: Tally) -> Cell:
     )
 
 
-def _widths(cells: Iterable[Cell]) -> tuple[int, int, int, int]:
+def _widths(cells: Iterable[TextCell]) -> tuple[int, int, int, int]:
     """Return how wide each part of a column is."""
     share, distance, time, marks = (
         max(len(part) for part in parts)
@@ -133,7 +133,7 @@ def _cut(name: str, width: int) -> str:
     return name if len(name) <= width else f"{name[: width - 1]}…"
 
 
-def _written(cell: Cell, widths: tuple[int, int, int, int], span: int, *, colour: bool) -> str:
+def _written(cell: TextCell, widths: tuple[int, int, int, int], span: int, *, colour: bool) -> str:
     """Return a cell with its parts at their places."""
     share = _painted(f"{cell.share:>{widths[0]}}", cell.colour, colour=colour)
     rest = f" {cell.distance:>{widths[1]}} {cell.time:>{widths[2]}} {cell.marks:<{widths[3]}}"

@@ -63,7 +63,7 @@ class Row(NamedTuple):
     cases: list[dict[str, Any]]
 
 
-class Block(NamedTuple):
+class ScenarioGroup(NamedTuple):
     """A group with its scenarios."""
 
     group: str
@@ -80,14 +80,14 @@ def name_of(case: Mapping[str, Any]) -> str:
     return f"{case['id']} #{case['repetition'] + 1}" if "repetition" in case else str(case["id"])
 
 
-def blocks(matrix: dict[str, Any]) -> list[Block]:
+def blocks(matrix: dict[str, Any]) -> list[ScenarioGroup]:
     """Return the cases of a matrix by group and scenario, in the order in which they come."""
     found: dict[str, dict[str, Row]] = {}
     for case in matrix["cases"]:
         rows = found.setdefault(case["group"], {})
         row = rows.setdefault(case["scenario"], Row(case["scenario"], case["title"], []))
         row.cases.append(case)
-    return [Block(group, list(rows.values())) for group, rows in found.items()]
+    return [ScenarioGroup(group, list(rows.values())) for group, rows in found.items()]
 
 
 def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:

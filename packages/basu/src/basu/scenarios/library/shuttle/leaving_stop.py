@@ -6,7 +6,7 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from basu.scenarios.actions import Brake, ChangeLane, DriveAlong, InTurn, Limits, Meanwhile, Wait
+from basu.scenarios.actions import Brake, ChangeLane, DriveAlong, FollowerLimits, InTurn, Meanwhile, Wait
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 CAR, HALF_LENGTH_M = "vehicle.lincoln.mkz_2020", 2.45
 EGO_HALF_LENGTH_M = 2.0
 OUT_M, IN_M = 10.0, 12.0  # on which it gets out of the lane, and back in
-HURRY = Limits(accelerate_mps2=4.0, brake_mps2=4.0)
+HURRY = FollowerLimits(accelerate_mps2=4.0, brake_mps2=4.0)
 SLOW_S = 4.0  # that it crawls
 
 

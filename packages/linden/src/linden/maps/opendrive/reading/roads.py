@@ -16,12 +16,12 @@ from linden.maps.opendrive.model import (
     Cubic,
     Geometry,
     Junction,
-    Line,
     ParamPoly3,
     Road,
     RoadLink,
     RoadType,
     Spiral,
+    StraightLine,
 )
 from linden.maps.opendrive.reading.attributes import (
     cubic_coefficients,
@@ -160,15 +160,15 @@ def _is_empty(geometry: Element) -> bool:
     return length_m == 0.0
 
 
-def _shape(geometry: Element) -> Line | Arc | Spiral | ParamPoly3:
+def _shape(geometry: Element) -> StraightLine | Arc | Spiral | ParamPoly3:
     node = next((child for child in geometry if isinstance(child.tag, str)), None)
     match None if node is None else node.tag:
         case "line":
-            return Line()
+            return StraightLine()
         case "arc":
             assert node is not None
             curvature = number(node, "curvature")
-            return Arc(curvature) if abs(curvature) > _STRAIGHT_PER_M else Line()
+            return Arc(curvature) if abs(curvature) > _STRAIGHT_PER_M else StraightLine()
         case "spiral":
             assert node is not None
             return Spiral(number(node, "curvStart"), number(node, "curvEnd"))

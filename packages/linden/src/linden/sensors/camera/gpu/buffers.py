@@ -24,7 +24,7 @@ from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.casting.caster import Hits, Rays
 from linden.sensors.casting.gpu_memory import Gpu, UploadBuffer
 from linden.sensors.casting.warp_caster import DeviceRays, WarpCaster
-from linden.sensors.view import Look, Seen, first_of_places, id_of_places
+from linden.sensors.view import Seen, SensorLook, first_of_places, id_of_places
 
 
 class RayBuffers:
@@ -193,7 +193,7 @@ def of_owners(seen: Seen) -> Inputs:
     }
 
 
-def of_motion(look: Look) -> Inputs:
+def of_motion(look: SensorLook) -> Inputs:
     """Return where bodies and the camera came from."""
     before, now = motion.eye(look.before), motion.eye(look.pose)
     return {

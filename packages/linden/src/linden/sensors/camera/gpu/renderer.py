@@ -32,7 +32,7 @@ from linden.sensors.camera.spec import CameraSpec, Film, Picture
 from linden.sensors.casting.caster import Caster
 from linden.sensors.casting.gpu_memory import UploadBuffer
 from linden.sensors.casting.warp_caster import WarpCaster
-from linden.sensors.view import Faces, Look, Seen
+from linden.sensors.view import Faces, Seen, SensorLook
 
 Pixels = NDArray[Any]
 Waiting = Callable[[], Pixels]
@@ -58,16 +58,16 @@ class GpuRenderer:
         self._frame: dict[Hashable, object] | None = None
         self._stage: tuple[Faces, Relief] | None = None
 
-    def expect(self, picture: Picture, look: Look) -> None:
+    def expect(self, picture: Picture, look: SensorLook) -> None:
         """Begin a picture that a sensor reads later in this frame."""
         self._begun(picture, look)
 
-    def make(self, picture: Picture, look: Look) -> Pixels:
+    def make(self, picture: Picture, look: SensorLook) -> Pixels:
         """Return a picture; to be called once in a frame."""
         spec = picture.spec
         return self._begun(picture, look)().reshape(spec.height_px, spec.width_px, -1)
 
-    def _begun(self, picture: Picture, look: Look) -> Waiting:
+    def _begun(self, picture: Picture, look: SensorLook) -> Waiting:
         """Return what waits for a picture, once begun in a frame."""
 
         def begin() -> Waiting:
@@ -78,7 +78,7 @@ class GpuRenderer:
 
         return self._once((picture, look.pose, look.before), look, begin)
 
-    def _paint(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: Look) -> Waiting:
+    def _paint(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: SensorLook) -> Waiting:
         """Begin a picture of what was measured."""
         pixel, image = self._constants.pixel(spec), self._image(view_buffers, spec, kind)
         columns = self._columns(kind, view_buffers, spec, look)
@@ -88,7 +88,7 @@ class GpuRenderer:
         )
         return view_buffers.gpu.fetching(image)
 
-    def _columns(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: Look) -> tuple[Any, ...]:
+    def _columns(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: SensorLook) -> tuple[Any, ...]:
         """Return what the kernel of a kind is given before the picture."""
         ray_buffers = view_buffers.ray_buffers
         if kind == "depth":
@@ -105,7 +105,7 @@ class GpuRenderer:
             return ray_buffers.hits, owners["first"], faces.tag
         return ray_buffers.hits, owners["first"], owners["actor_id"], faces, owners["object_id"]
 
-    def _shine(self, view_buffers: ViewBuffers, spec: CameraSpec, film: Film, look: Look) -> Waiting:
+    def _shine(self, view_buffers: ViewBuffers, spec: CameraSpec, film: Film, look: SensorLook) -> Waiting:
         """Begin a picture of light."""
         stage = self._on(look.seen)
         places = self._once("places", look, lambda: Places(**self._sent("places", places_of(look.seen)._asdict())))
@@ -126,7 +126,7 @@ class GpuRenderer:
 
         return picture
 
-    def _view_buffers(self, spec: CameraSpec, look: Look) -> ViewBuffers:
+    def _view_buffers(self, spec: CameraSpec, look: SensorLook) -> ViewBuffers:
         """Return where the pictures of a view are made, its rays cast."""
 
         def cast() -> ViewBuffers:
@@ -150,7 +150,7 @@ class GpuRenderer:
 
         return self._once(("view", spec, look.pose), look, cast)
 
-    def _once(self, key: Hashable, look: Look, make: Callable[[], Thing]) -> Thing:
+    def _once(self, key: Hashable, look: SensorLook, make: Callable[[], Thing]) -> Thing:
         """Return what is made once in a frame, for all its cameras."""
         if self._frame is not look.shared:
             self._frame, self._of_frame, self._taken = look.shared, {}, {}

@@ -35,7 +35,7 @@ from linden.sensors.camera.picture.patterns import (
     SHINGLES,
     SIDING,
     WOOD,
-    Look,
+    SpotLook,
     asphalt,
     bark,
     brick,
@@ -53,7 +53,7 @@ from linden.sensors.camera.picture.patterns import (
 from linden.sensors.camera.picture.surface_points import Floats, facing
 
 
-def _dressing(look_of: Callable[..., Look]) -> Callable[[Floats, int], None]:
+def _dressing(look_of: Callable[..., SpotLook]) -> Callable[[Floats, int], None]:
     """Return the loop that gives spots of one material its pattern."""
 
     @shading_stage

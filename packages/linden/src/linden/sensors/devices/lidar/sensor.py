@@ -20,7 +20,7 @@ from linden.sensors.devices.lidar.sweep import (
     semantic_points_of,
 )
 from linden.sensors.devices.noise import dice_of
-from linden.sensors.view import Look, Seen, actor_of_objects, first_of_places, id_of_places
+from linden.sensors.view import Seen, SensorLook, actor_of_objects, first_of_places, id_of_places
 
 
 class Lidar:
@@ -34,7 +34,7 @@ class Lidar:
         """Turn on unheard."""
         self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
 
-    def measure(self, look: Look) -> Sweep:
+    def measure(self, look: SensorLook) -> Sweep:
         """Return the points of the time since the last measurement."""
         fan, losses, dice = self._fan, self._losses, dice_of(self._losses.seed, look.number)
         fired = fire(fan, self._angle_deg, look.interval_s)
@@ -73,7 +73,7 @@ class SemanticLidar:
         """Turn on unheard."""
         self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
 
-    def measure(self, look: Look) -> SemanticSweep:
+    def measure(self, look: SensorLook) -> SemanticSweep:
         """Return the points of the time since the last measurement."""
         fired = fire(self._fan, self._angle_deg, look.interval_s)
         self.skip(look.interval_s)

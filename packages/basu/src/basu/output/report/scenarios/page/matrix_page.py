@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from basu.output.report.scenarios.matrix_documents import CaseRecord
-    from basu.output.report.scenarios.tally import Block
+    from basu.output.report.scenarios.tally import ScenarioGroup
 
 PAGE_FILE = "matrix.html"
 HERE = Path(__file__).parent
@@ -197,7 +197,7 @@ def _table(matrix: dict[str, Any], agents: Sequence[str], carded: Collection[str
     }
 
 
-def _cases(block: Block, cards: dict[str, list[Markup]]) -> dict[str, Any]:
+def _cases(block: ScenarioGroup, cards: dict[str, list[Markup]]) -> dict[str, Any]:
     """Return a group with its scenarios: the cases that have cards."""
     rows = []
     for row in block.rows:
