@@ -28,8 +28,13 @@ from basu.campaigns import command
 from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
 from basu.campaigns.drive_table import read_drives
-from basu.campaigns.player import DriveDone, PlayerSettings
-from basu.jobs.job import JobOutcome, Play, PlayerSpec, versions
+from basu.campaigns.player import PlayerSettings
+from basu.jobs.job import JobOutcome, Play, PlayerSpec
+from basu.metrics.result import Result
+from basu.metrics.score import Scores
+from basu.metrics.success import Success
+from basu.outcome import Outcome, Status
+from basu.running.drive import DriveDone
 
 CAMPAIGN = """
 name = "kills"
@@ -59,11 +64,17 @@ def open_computed() -> Iterator[Play]:
     def play(job: dict[str, Any]) -> JobOutcome:
         share = int(job["id"][:8], 16) / 16**8
         time.sleep(2.0 * DRIVE_S * share)
-        verdict = {"status": "ScenarioEnded", "fault": "none", "judged": True, "success": share > 0.1}
-        costs = {"wall_s": time.perf_counter(), "cpu_s": 1.0, "memory_mb": 1.0, "host": "here", "worker": os.getpid()}
-        program = {f"version_{name}": text for name, text in versions().items()}
-        row = {**verdict, **costs, **program, "message": "computed", "severity": share, "simulated_s": 20.0}
-        return JobOutcome(DriveDone(row, None))
+        result = Result(
+            outcome=Outcome(Status.SCENARIO_ENDED, "computed"),
+            scores=Scores(share, 1.0, share),
+            infractions=(),
+            metrics={},
+            scoring={},
+            meta={},
+            success=Success(share > 0.1),
+        )
+        cost = {"wall_s": time.perf_counter(), "cpu_s": 1.0, "memory_mb": 1.0, "host": "here", "worker": os.getpid()}
+        return JobOutcome(DriveDone(None, result, cost=cost))
 
     yield play
 

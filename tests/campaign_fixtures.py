@@ -17,7 +17,7 @@ from basu.jobs.job import Answer, PlayerSpec, Ready, versions
 PLAYER = """
 import contextlib, io, json, math, os, signal, tarfile, time
 from pathlib import Path
-from basu.jobs.job import Played, PlayerSpec
+from basu.jobs.job import JobOutcome, PlayerSpec
 from basu.metrics.result import Result
 from basu.metrics.score import Scores
 from basu.metrics.success import Success
@@ -66,7 +66,7 @@ def play(job):
         "worker": os.getpid(),
     }
     packed = tar() if not success or share > job["bar"] else None
-    return Played(DriveDone(None, result, packed=packed, cost=cost))
+    return JobOutcome(DriveDone(None, result, packed=packed, cost=cost))
 """
 
 CAMPAIGN = """

@@ -56,6 +56,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has seen enough, such as `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = UNREAD
+    if (agents := sys.modules.get("basu.agents.process.agent_process")) is not None:
+        agents.end_unused()
     if client_threads.is_held():
         client_threads.leave(code)
     return code

@@ -148,9 +148,11 @@ def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[st
 
 
 def _condition(value: Any) -> Any:  # noqa: ANN401 - values of any option
-    """An option's value as JSON has it; a file by its contents."""
+    """An option's value as JSON has it; a file by its contents, a folder by the contents of its files."""
     if isinstance(value, Path):
-        return _digest(value.read_bytes())
+        if value.is_file():
+            return _digest(value.read_bytes())
+        return {file.name: _condition(file) for file in sorted(value.iterdir()) if file.is_file()}
     return [_condition(each) for each in value] if isinstance(value, list | tuple) else to_json(value)
 
 

@@ -193,6 +193,11 @@ class AgentProcess:
             with contextlib.suppress(OSError):
                 made.rmdir()  # where no drive has written into it
 
+    def end_unused(self) -> None:
+        """End the process if no drive has written into a folder that was made for it, and remove that folder."""
+        if any(made.is_dir() and not any(made.iterdir()) for made in self._made_folders):
+            self.kill()
+
     def _begin_run(self) -> None:
         """Let the keeper count the output of a new run."""
         with contextlib.suppress(OSError):
@@ -322,6 +327,12 @@ def _resident_bytes(pid: int) -> int:
 
 
 _running: set[AgentProcess] = set()
+
+
+def end_unused() -> None:
+    """Let a command that ended before its first drive leave no empty folder of results."""
+    for process in list(_running):
+        process.end_unused()
 
 
 @atexit.register
