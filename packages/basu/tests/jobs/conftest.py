@@ -9,7 +9,7 @@ PLAYER = """
 import contextlib, os, signal, time
 from pathlib import Path
 from basu.errors import UserError
-from basu.jobs.job import After, Played
+from basu.jobs.job import After, JobOutcome
 
 @contextlib.contextmanager
 def open_player(opening="ready"):
@@ -29,12 +29,12 @@ def play(data):
     if word == "hang":
         time.sleep(600.0)
     if word == "fresh":
-        return Played(os.getpid(), After.FRESH)
+        return JobOutcome(os.getpid(), After.FRESH)
     if word == "again":
-        return Played(os.getpid(), After.AGAIN)
+        return JobOutcome(os.getpid(), After.AGAIN)
     if word == "pid":
         Path(argument).write_text(str(os.getpid()))
-    return Played((word, argument, os.getpid()))
+    return JobOutcome((word, argument, os.getpid()))
 """
 
 

@@ -47,7 +47,7 @@ def test_an_object_keeps_what_a_later_layer_does_not_name() -> None:
             {"vehicles": 1, "traffic_density": 2.0},
             "c.json: options.vehicles and c.json: options.traffic_density exclude",
         ),
-        ({"hud_screenshot": "a.png"}, "c.json: --hud-screenshot takes a picture of the window; add --hud"),
+        ({"in_process": True, "agent_memory_gb": 1.0}, "c.json: --agent-memory limits the agent's own process"),
     ],
 )
 def test_a_complaint_about_a_file_names_path_and_key(values: dict[str, Any], sentence: str) -> None:
@@ -65,7 +65,7 @@ def test_a_complaint_about_python_names_the_keyword() -> None:
 
 def test_keywords_may_be_python_values() -> None:
     found = from_keywords(RunOptions, output=Path("there"), scenario_files=(Path("a.py"),), agent_writes=(Path("b"),))
-    assert (found.output, found.scenario_files, found.agent_writes) == (Path("there"), (Path("a.py"),), (Path("b"),))
+    assert (found.output, found.scenario_files, found.agent_writes) == (Path("there"), (Path("a.py"),), ("b",))
     assert from_keywords(Scoring, penalties={Infraction.SPEEDING: 0.5}).penalties[Infraction.SPEEDING] == 0.5
     with pytest.raises(UserError, match=r"^agent is <class 'int'>; it must be a text, a number"):
         from_keywords(RunOptions, agent=int)
