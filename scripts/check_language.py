@@ -30,6 +30,7 @@ TREES: dict[str, tuple[str, ...]] = {
     "src/basu": ("src/basu/**/*.py",),
     "src/linden_window": ("src/linden_window/**/*.py",),
     "src/basu_window": ("src/basu_window/**/*.py",),
+    "src/linden_gym": ("src/linden_gym/**/*.py",),
     "docs": ("docs/**/*.md", "README.md", "CONTRIBUTING.md", "examples/**/*.md"),
     "tests": ("tests/**/*.py",),
 }

@@ -1,7 +1,7 @@
-"""Many gymnasium environments in one process, on `linden.Worlds`: observations, rewards and ends are those of `basu.gym`.
+"""Many gymnasium environments in one process, on `linden.Worlds`, by the rules of `basu.gym`.
 
 After ``import linden_gym``, ``gymnasium.make_vec("linden/Shuttle-v0", num_envs=1000)`` makes them, and
-``gymnasium.make`` makes a single one through the official client. See ``docs/how-to/many-environments.md``.
+``gymnasium.make`` makes a single one through the official client. See ``docs/how-to/worlds.md``.
 """
 
 from basu.errors import UserError

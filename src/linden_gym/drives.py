@@ -85,14 +85,12 @@ class Drives:
         before_s_m, speed_mps = self.table["s_m"][rows], ego.speed_mps
         locate(
             self.table, rows, self._route.s_m, self._points_m, self._widths_m,
-            np.ascontiguousarray(ego.x_m), np.ascontiguousarray(ego.y_m),
+            ego.x_m, ego.y_m,
         )  # fmt: skip
         off_lane_m, same_side = self._beside(rows, ego)
         judge(
             self.table, rows, before_s_m, self._route.s_m, self._route.yaw_rad, self._widths_m,
-            *(np.ascontiguousarray(part) for part in (
-                ego.x_m, ego.y_m, ego.yaw_rad, ego.velocity_x_mps, ego.velocity_y_mps, speed_mps
-            )),
+            ego.x_m, ego.y_m, ego.yaw_rad, ego.velocity_x_mps, ego.velocity_y_mps, speed_mps,
             off_lane_m, same_side, self._limit_s,
         )  # fmt: skip
         self._settled[rows] += self._new_contacts(rows, contacts) + self._signs_run(rows, speed_mps)
@@ -121,7 +119,11 @@ class Drives:
     def _new_contacts(self, rows: NDArray[np.int64], contacts: Any) -> NDArray[np.int64]:  # noqa: ANN401 - records
         """Return (K,) how many contacts of the vehicles begin in the frame."""
         new = np.zeros(len(rows), np.int64)
-        mine = contacts[np.isin(contacts["world"], rows) & ((contacts["a"] == 0) | (contacts["b"] == 0))]
+        if not len(contacts):
+            return new
+        place = np.full(len(self.table), -1)
+        place[rows] = np.arange(len(rows))
+        mine = contacts[(place[contacts["world"]] >= 0) & ((contacts["a"] == 0) | (contacts["b"] == 0))]
         if not len(mine):
             return new
         other = np.where(mine["a"] == 0, mine["b"], mine["a"])
@@ -130,11 +132,12 @@ class Drives:
             room = np.full((len(self._touched), int(party.max()) + 1), LONG_AGO, np.int64)
             room[:, : self._touched.shape[1]] = self._touched
             self._touched = room
-        world, party = np.unique(np.column_stack([mine["world"], party]), axis=0).T
+        parties = self._touched.shape[1]
+        world, party = np.divmod(np.unique(mine["world"].astype(np.int64) * parties + party), parties)
         tick = self.table["tick"][world]
         begins = is_separate(tick - self._touched[world, party], STEP_S)
         self._touched[world, party] = tick
-        np.add.at(new, np.searchsorted(rows, world), begins)
+        np.add.at(new, place[world], begins)
         return new
 
     def _signs_run(self, rows: NDArray[np.int64], speed_mps: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -114,8 +114,9 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._reward = Reward() if reward is None else reward
         self._ahead = RouteAhead(self.route)
-        self._drives = Drives(num_envs, self.route, LaneField(carla_map, self.route.points_m), self._box())
-        self._all = np.arange(num_envs)
+        lanes = LaneField(carla_map, self.worlds.map, self.route.points_m)
+        self._drives = Drives(num_envs, self.route, lanes, self._box())
+        self._all: NDArray[np.int64] = np.arange(num_envs, dtype=np.int64)
         self._over = np.ones(num_envs, np.bool_)  # environments with no episode
         self._reported = np.zeros(num_envs, np.int64)  # infractions
 
@@ -179,7 +180,9 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         """
         controls = controls_from(actions, (self.num_envs,))
         begins = self._over.copy()
-        if begins.any() and (self.autoreset_mode is not AutoresetMode.NEXT_STEP or (self._drives.table["tick"] < 0).any()):
+        if begins.any() and (
+            self.autoreset_mode is not AutoresetMode.NEXT_STEP or (self._drives.table["tick"] < 0).any()
+        ):
             waiting = np.flatnonzero(begins)
             raise UserError(
                 f"environment {waiting[0]} has no episode; call reset(), or reset(options={{'reset_mask': ...}})"
@@ -189,6 +192,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self.worlds.set_controls(controls.astype(np.float32))  # 32 bits, as a client sends them
         self.worlds.step()
         self.worlds.heed_limits(self._limits_kmh)
+        self._look()
         self._drives.advance(rows, self._ego(rows), self._posted_mps(rows), self.worlds.contacts)
         if begins.any():
             self._begin(np.flatnonzero(begins))
@@ -211,7 +215,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         looked = drove & (ended | (drives.table["tick"] % JUDGED_TICKS == 0))
         known = np.where(ended, drives.infractions, found)  # a frame is recorded together with the control after it
         new = np.where(looked, np.maximum(0, known - self._reported), 0)
-        self._reported = np.where(looked, known, self._reported)
+        self._reported[looked] = known[looked]
         ending = drives.table["ending"]
         parts = self._reward.parts(drives.driven_m - driven_m, new, ending == ARRIVED, _FAILED[ending])
         parts = {name: np.where(drove, np.broadcast_to(values, drove.shape), 0.0) for name, values in parts.items()}
@@ -259,25 +263,32 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         """Begin an episode in environments (K,), and take in its first frame."""
         self.worlds.reset(rows)
         self._limits_kmh[rows] = self._first_limits_kmh[rows]
+        self._look()
         self._drives.begin(rows)
         self._drives.advance(rows, self._ego(rows), self._posted_mps(rows), self.worlds.contacts[:0])
         self._reported[rows], self._over[rows] = 0, False
 
+    def _look(self) -> None:
+        """Read the motion of the vehicles under test, rounded to 32 bits as a client gets it."""
+        body = self.worlds.state[:, EGO]
+        x_m, y_m, self._z_m = np.ascontiguousarray(_single(body["position"]).T)
+        velocity_mps = np.ascontiguousarray(_single(body["velocity"]).T)
+        push_mps2 = _single(body["acceleration"])
+        self._motion = EgoRows(
+            x_m=x_m,
+            y_m=y_m,
+            yaw_rad=_yaw_rad(body["rotation"][:, 1]),
+            velocity_x_mps=velocity_mps[0],
+            velocity_y_mps=velocity_mps[1],
+            velocity_z_mps=velocity_mps[2],
+            acceleration_x_mps2=push_mps2[:, 0],
+            acceleration_y_mps2=push_mps2[:, 1],
+            angular_velocity_z_radps=np.radians(_single(np.degrees(body["angular_velocity"][:, 2]))),
+        )
+
     def _ego(self, rows: NDArray[np.int64]) -> EgoRows:
-        """Return the motion of the vehicles under test (K,), rounded to 32 bits as a client gets it."""
-        body = self.worlds.state[rows, EGO]
-        position_m, velocity_mps, acceleration_mps2 = (
-            _single(body[name]) for name in ("position", "velocity", "acceleration")
-        )
-        return EgoRows(
-            position_m[:, 0],
-            position_m[:, 1],
-            _yaw_rad(body["rotation"][:, 1]),
-            *velocity_mps.T,
-            acceleration_mps2[:, 0],
-            acceleration_mps2[:, 1],
-            np.radians(_single(np.degrees(body["angular_velocity"][:, 2]))),
-        )
+        """Return the motion of the vehicles under test in environments (K,)."""
+        return self._motion if len(rows) == self.num_envs else EgoRows(*(column[rows] for column in self._motion))
 
     def _posted_mps(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the limits (K,) that are posted to the vehicles."""
@@ -294,7 +305,10 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
 
         The place is that of the middle of the box, as in `basu.managers.observations`.
         """
-        body = self.worlds.state[rows, EGO + 1 :]
+        state = self.worlds.state
+        if state.shape[1] == EGO + 1:
+            return np.zeros((len(rows), 0, 6)), np.zeros((len(rows), 0), np.bool_)
+        body = state[rows, EGO + 1 :]
         position_m, velocity_mps = _single(body["position"]), _single(body["velocity"])
         yaw_rad = _yaw_rad(body["rotation"][..., 1])
         middle_m, half_m = _single(body["box_centre"]), _single(body["half_extent"])
@@ -302,8 +316,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         away_m = np.hypot(position_m[..., 0] - ego.x_m[:, None], position_m[..., 1] - ego.y_m[:, None])
         is_there = body["alive"] & (body["kind"] != NO_BODY) & (away_m <= NEAR_M)
         bottom_m = position_m[..., 2] + middle_m[..., 2] - np.maximum(half_m[..., 2], SMALLEST_M)
-        ego_z_m = _single(self.worlds.state[rows, EGO]["position"])[:, 2]
-        is_there &= (body["kind"] != PROP) | (bottom_m < ego_z_m[:, None] + OVERHEAD_M)
+        is_there &= (body["kind"] != PROP) | (bottom_m < self._z_m[rows][:, None] + OVERHEAD_M)
         table = np.stack(
             [
                 position_m[..., 0] + middle_m[..., 0] * cos - middle_m[..., 1] * sin,

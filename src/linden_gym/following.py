@@ -1,4 +1,4 @@
-"""Kernels that follow many vehicles along one route: place, valid progress and end of the drive, by the rules of `basu`.
+"""Kernels that follow many vehicles along one route by the rules of `basu`: place, valid progress, end of the drive.
 
 The rules are functions of numbers in `basu`. They are compiled here, so that `basu` needs no compiler.
 """
@@ -43,7 +43,8 @@ DRIVE = np.dtype(
 )
 
 SOURCES = fingerprint(
-    Path(__file__), *(Path(str(module.__file__)) for module in (delays, ending, path_following, planned_route, validity))
+    Path(__file__),
+    *(Path(str(module.__file__)) for module in (delays, ending, path_following, planned_route, validity)),
 )
 
 _search_window = part(planned_route.search_window)
@@ -81,8 +82,8 @@ def locate(
     for k in range(len(rows)):
         drive = drives[rows[k]]
         back_m, ahead_m = _search_window(drive.s_m, drive.distance_m)
-        first = max(0, np.searchsorted(route_s_m, back_m) - 1)
-        end = min(last + 1, np.searchsorted(route_s_m, ahead_m) + 1)
+        first = max(0, int(np.searchsorted(route_s_m, back_m)) - 1)
+        end = min(last + 1, int(np.searchsorted(route_s_m, ahead_m)) + 1)
         nearest, least = first, math.inf
         for index in range(first, end):
             away2 = (points_m[index, 0] - x_m[k]) ** 2 + (points_m[index, 1] - y_m[k]) ** 2
@@ -101,7 +102,7 @@ def locate(
             )
             if place[2] < distance_m:
                 s_m, lateral_m, distance_m = place
-        at = max(0, np.searchsorted(route_s_m, s_m, side="right") - 1)
+        at = max(0, int(np.searchsorted(route_s_m, s_m, side="right")) - 1)
         drive.at, drive.off_edge_m = at, _too_far_beyond_m(lateral_m, widths_m[at])
         drive.lateral_m, drive.distance_m = lateral_m, distance_m
         drive.reached_m, drive.s_m = (s_m if drive.tick < 0 else drive.reached_m), s_m

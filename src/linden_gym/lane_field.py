@@ -6,24 +6,27 @@ A search of the official client takes 25 us on a lane and 3 ms beside the road. 
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import carla
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from basu.managers.observations import FOR_VEHICLES
 from basu.metrics.validity import BEYOND_M, LOST_M
+from basu.routing.lane_graph import read_roads
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from linden.maps.library import LoadedMap
 
-    import carla
-    from numpy.typing import NDArray
+F64 = NDArray[np.float64]
 
-F64 = NDArray[np.float64] if TYPE_CHECKING else object
-
-SPACING_M = 0.5
-BESIDE_M = LOST_M + 10.0  # from the route: a drive ends before its vehicle is farther away
+SPACING_M = 0.25
+STRETCH_M = 10.0  # of a lane, which is sampled or skipped as a whole
+END_M = 1e-3  # how far inside its stretch a lane is sampled first
+BESIDE_M = LOST_M + STRETCH_M  # from the route: a drive ends before its vehicle is farther away
 SLACK_M = 1.0
 
 
@@ -40,8 +43,8 @@ class _Samples:
     """Points of lanes, with the distance of places to their middles."""
 
     def __init__(self, rows: F64) -> None:
-        """Take rows (N, 5) of x, y, yaw in rad, half the width, and a number."""
-        self._x_m, self._y_m, yaw_rad, self.half_m, self.number = rows.T
+        """Take rows (N, 4) of x, y, yaw in rad and half the width."""
+        self._x_m, self._y_m, yaw_rad, self.half_m = rows.T
         self._cos, self._sin = np.cos(yaw_rad), np.sin(yaw_rad)
         self._tree = cKDTree(rows[:, :2]) if len(rows) else None
         self._farthest_m = float(self.half_m.max(initial=0.0)) + BEYOND_M + SLACK_M
@@ -67,19 +70,26 @@ class _Samples:
 class LaneField:
     """The lanes within `BESIDE_M` of a route."""
 
-    def __init__(self, carla_map: carla.Map, points_m: F64) -> None:
-        """Read the lanes near the points (N, 2 or more) of a route from the map."""
+    def __init__(self, carla_map: carla.Map, world_map: LoadedMap, points_m: F64) -> None:
+        """Read the lanes near the points (N, 2 or more) of a route; both maps are the same one."""
         near = cKDTree(points_m[:, :2])
-        waypoints = carla_map.generate_waypoints(SPACING_M)
-        places = [waypoint.transform.location for waypoint in waypoints]
-        away_m, _ = near.query(np.array([(at.x, at.y) for at in places]), distance_upper_bound=BESIDE_M)
-        lanes: dict[tuple[int, int, int, float], carla.Waypoint] = {}
-        for number in np.flatnonzero(np.isfinite(away_m)).tolist():
-            for lane in _abreast(waypoints[number]):
-                lanes.setdefault((lane.road_id, lane.section_id, lane.lane_id, round(lane.s, 3)), lane)
-        found = list(lanes.values())
+        roads = read_roads(world_map.text)
+        lanes = np.unique(world_map.lanes[["road_id", "section", "lane_id"]])
+        found: list[carla.Waypoint] = []
+        for road_id, section, lane_id in lanes.tolist():
+            begin_m, end_m = roads[road_id].section_extent_m(section)
+            for first_m in np.arange(begin_m, end_m, STRETCH_M).tolist():
+                last_m = min(first_m + STRETCH_M, end_m)
+                middle = carla_map.get_waypoint_xodr(road_id, lane_id, (first_m + last_m) / 2.0)
+                if middle is None or middle.lane_type == carla.LaneType.NONE:  # a search for any lane ignores it
+                    continue
+                at = middle.transform.location
+                if np.isfinite(near.query((at.x, at.y), distance_upper_bound=BESIDE_M)[0]):
+                    places_m = np.arange(first_m, last_m, SPACING_M) + END_M
+                    found += [carla_map.get_waypoint_xodr(road_id, lane_id, place_m) for place_m in places_m.tolist()]
+        found = [lane for lane in found if lane is not None]
         self._lanes = np.array([(lane.road_id, lane.lane_id, lane.is_junction) for lane in found], np.int64)
-        rows = np.array([_row(lane, number) for number, lane in enumerate(found)])
+        rows = np.array([_row(lane) for lane in found])
         kinds = np.array([int(lane.lane_type) for lane in found])
         self._any = _Samples(rows)
         self._for_vehicles = [_Samples(rows[kinds == int(kind)]) for kind in FOR_VEHICLES]
@@ -93,18 +103,6 @@ class LaneField:
         return LanesUnder(road_id, np.where(on_lane, lane_id, 0), in_junction > 0, np.maximum(0.0, off_m))
 
 
-def _abreast(waypoint: carla.Waypoint) -> Iterator[carla.Waypoint]:
-    """Yield a waypoint and those of all lanes beside it, as far as the road has lanes on that side."""
-    yield waypoint
-    for step in ("get_left_lane", "get_right_lane"):
-        seen = {waypoint.lane_id}
-        beside = getattr(waypoint, step)()
-        while beside is not None and beside.lane_id not in seen:
-            seen.add(beside.lane_id)
-            yield beside
-            beside = getattr(beside, step)()
-
-
-def _row(lane: carla.Waypoint, number: int) -> tuple[float, ...]:
+def _row(lane: carla.Waypoint) -> tuple[float, ...]:
     pose = lane.transform
-    return (pose.location.x, pose.location.y, np.radians(pose.rotation.yaw), lane.lane_width / 2.0, number)
+    return (pose.location.x, pose.location.y, math.radians(pose.rotation.yaw), lane.lane_width / 2.0)
