@@ -31,6 +31,7 @@ from linden_gym import ID
 
 ROUNDS = 5
 CRUISE_MPS = 5.0
+EMPTY_STEPS = 2_000_000  # the processor time has a grain of 10 ms
 PEER = Path(__file__).with_name("peer_metadrive.py")
 
 
@@ -115,11 +116,16 @@ def several(number: int, steps: int, vehicles: int) -> Rate:
 def on_worlds(number: int, steps: int) -> list[tuple[str, Rate]]:
     """Rows of a vector of environments on worlds in this process, of its physics alone, and of an empty loop."""
     env = gymnasium.make_vec(ID, num_envs=number)
-    follower = Follower(env)
+    follower, worlds = Follower(env), env.unwrapped.worlds
+
+    def bare() -> None:
+        worlds.set_controls([0.25, 0.0, 0.0])
+        worlds.step()
+
     return [
         (f"linden/Shuttle-v0, {number} worlds", rate(follower.step, follower.begin, steps, number)),
-        ("its worlds alone", rate(env.unwrapped.worlds.step, follower.begin, steps, number)),
-        ("an empty loop", rate(lambda: None, lambda: None, 100 * steps)),
+        ("its worlds alone", rate(bare, follower.begin, steps, number)),
+        ("an empty loop", rate(lambda: None, lambda: None, EMPTY_STEPS)),
     ]
 
 
