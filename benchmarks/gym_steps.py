@@ -1,6 +1,7 @@
 """Steps a second of the gymnasium environment, of several at once, and of the official client alone.
 
-    python benchmarks/gym_steps.py [--steps 600] [--environments 1 2 4] [--vehicles 0] [--peer-python PYTHON]
+    python benchmarks/gym_steps.py [--steps 600] [--environments 1 2 4] [--worlds 1000] [--vehicles 0]
+                                   [--peer-python PYTHON]
 
 All rows drive the short route. The client alone gives a control and a tick of the same world, no observation and no
 record. Processor time is that of this process and of all below it: simulators, workers and environments together.
@@ -26,9 +27,11 @@ from gymnasium.vector import VectorEnv
 
 from basu.campaigns.cost import cost_of
 from basu.gym import ShuttleEnv
+from linden_gym import ID
 
 ROUNDS = 5
 CRUISE_MPS = 5.0
+EMPTY_STEPS = 2_000_000  # the processor time has a grain of 10 ms
 PEER = Path(__file__).with_name("peer_metadrive.py")
 
 
@@ -110,6 +113,22 @@ def several(number: int, steps: int, vehicles: int) -> Rate:
         env.close()
 
 
+def on_worlds(number: int, steps: int) -> list[tuple[str, Rate]]:
+    """Rows of a vector of environments on worlds in this process, of its physics alone, and of an empty loop."""
+    env = gymnasium.make_vec(ID, num_envs=number)
+    follower, worlds = Follower(env), env.unwrapped.worlds
+
+    def bare() -> None:
+        worlds.set_controls([0.25, 0.0, 0.0])
+        worlds.step()
+
+    return [
+        (f"linden/Shuttle-v0, {number} worlds", rate(follower.step, follower.begin, steps, number)),
+        ("its worlds alone", rate(bare, follower.begin, steps, number)),
+        ("an empty loop", rate(lambda: None, lambda: None, EMPTY_STEPS)),
+    ]
+
+
 def show(name: str, found: Rate) -> None:
     """Print a row."""
     print(f"{name:<34}{found.steps_per_s:9.0f}{found.steps_per_cpu_s:22.0f}{found.cpu_ms:20.2f}", flush=True)
@@ -131,6 +150,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=600)
     parser.add_argument("--environments", type=int, nargs="*", default=[1, 2, 4], help="in each vector")
+    parser.add_argument("--worlds", type=int, default=1000, help="in the vector without simulators")
     parser.add_argument("--vehicles", type=int, default=0)
     parser.add_argument("--peer-python", type=Path, help="a Python that has metadrive-simulator")
     given = parser.parse_args()
@@ -141,6 +161,8 @@ def main() -> None:
         show(name, found)
     for number in given.environments:
         show(f"a vector of {number}", several(number, given.steps, given.vehicles))
+    for name, found in on_worlds(given.worlds, max(20, given.steps // 10)):
+        show(name, found)
     peer(given.peer_python, given.steps)
     print(f"reset: the first {first_s:.2f} s, again {again_s:.2f} s")
 

@@ -26,7 +26,7 @@ from pathlib import Path
 import carla
 import msgpack
 
-HERE = Path(__file__).parents[1] / "src"
+HERE = Path(__file__).parents[1] / "packages" / "linden" / "src"
 TIMEOUT_S = 120.0
 WORLD_OBSERVER, FIRST_SENSOR = 1, 2
 KINDS = ("vehicle.tesla.model3", "vehicle.easymile.ez10", "vehicle.kawasaki.ninja", "vehicle.ford.ambulance")

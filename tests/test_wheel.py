@@ -38,6 +38,7 @@ OPTIONAL = (
         "basu_search",
         "basu_sumo",
         "basu_window",
+        "linden_gym",
         "linden_window",
         "websockets",
     ),

@@ -15,6 +15,7 @@ from linden.physics.bodies import FARTHEST_M
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.control import VehicleControl, WalkerControl
 from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.snapshot import VEHICLE_ROW
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.world import World
 from linden.worlds import Worlds
@@ -113,6 +114,37 @@ def test_worlds_stepped_together_are_those_stepped_one_by_one(maps: MapLibrary) 
         for all_contacts, contacts in zip(met, own, strict=True):
             assert of_world(all_contacts, number).tobytes() == contacts.tobytes()
     assert len({together.state[number].tobytes() for number in range(count)}) == count
+
+
+def test_a_reset_brings_back_what_was_kept(maps: MapLibrary) -> None:
+    worlds = populated(maps, 2)
+    drive(worlds, [0, 1], 20)
+    worlds.keep([1])
+    kept = worlds.state[1].tobytes()
+    drive(worlds, [0, 1], 20)
+    worlds.reset()
+    assert worlds.state[1].tobytes() == kept
+    assert worlds.state[0].tobytes() == populated(maps, 1).state[0].tobytes()
+
+
+def test_the_posted_limits_are_those_of_the_server(maps: MapLibrary) -> None:
+    worlds = populated(maps, 2)
+    server = World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05))
+    pose = ahead(maps, 30, 0.0)
+    car = server.spawn(ActorDescription(0, CAR), Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])))
+    server.step(0.05)
+    limits_kmh = np.full(2, 3.0)
+    worlds.step()
+    worlds.heed_limits(limits_kmh)
+    row = server.episode.actors.rows.view(VEHICLE_ROW)[server.episode.actors.row(car.id)]
+    assert limits_kmh == pytest.approx([row["speed_limit"]] * 2)
+    worlds.place([5000.0, 5000.0, 300.0, 0.0, 0.0, 0.0])
+    worlds.heed_limits(limits_kmh)
+    assert limits_kmh == pytest.approx([row["speed_limit"]] * 2)  # off the road the last one holds
+    with pytest.raises(UserError, match=r"limits_kmh needs an array \(2,\) of float64"):
+        worlds.heed_limits(np.zeros(3))
+    with pytest.raises(UserError, match="slot 2 of world 0 holds no vehicle"):
+        worlds.heed_limits(limits_kmh, slot=2)
 
 
 def test_the_number_of_threads_changes_nothing(maps: MapLibrary) -> None:

@@ -25,7 +25,6 @@ from __future__ import annotations
 
 import contextlib
 import weakref
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AgentConfig
@@ -45,7 +44,16 @@ from basu.simulator import simulator_for
 try:
     import gymnasium
 
-    from basu.gym_spaces import Preview, action_space, control_from, observation_space
+    from basu.gym_spaces import (
+        FAILED,
+        JUDGED_TICKS,
+        TRUNCATED,
+        Preview,
+        Reward,
+        action_space,
+        control_from,
+        observation_space,
+    )
 except ImportError as error:
     raise UserError("basu.gym needs gymnasium; install it with `pip install basu[gym]`") from error
 
@@ -59,21 +67,6 @@ if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
     from basu.simulator import Simulator
-
-JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
-TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
-FAILED = frozenset({Status.ROUTE_DEVIATION, Status.ROUTE_BLOCKED})
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Reward:
-    """What a step is worth: the sum of these."""
-
-    progress: float = 0.1  # for a metre along the route
-    time: float = -0.01  # for a second
-    infraction: float = -10.0  # for an infraction of the thesis's: collisions, lights, stop signs, speeding
-    arrival: float = 10.0  # for the end of the route
-    failure: float = -10.0  # for leaving the route, or standing still for too long
 
 
 class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.float32]"]):
@@ -112,7 +105,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         if case is not None:
             self._spec = case_spec(by_id(case), vehicle=vehicle, timeout_s=timeout_s)
         else:
-            self._spec = _route_spec(
+            self._spec = route_spec(
                 routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
             )
         self.action_space = action_space()
@@ -186,21 +179,15 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
 
     def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
         """Return the parts of a step's reward, by the names of `Reward`'s fields."""
-        worth, status = self._reward, None if outcome is None else outcome.status
-        return {
-            "progress": worth.progress * driven_m,
-            "time": worth.time * STEP_S,
-            "infraction": worth.infraction * infractions,
-            "arrival": worth.arrival * (status is Status.COMPLETED),
-            "failure": worth.failure * (status in FAILED),
-        }
+        status = None if outcome is None else outcome.status
+        return self._reward.parts(driven_m, infractions, status is Status.COMPLETED, status in FAILED)
 
     def close(self) -> None:
         """End the episode, and the simulator where it is ours."""
         self._resources.close()
 
 
-def _route_spec(
+def route_spec(
     routes: str,
     route_id: str | None,
     vehicle: str | None,
@@ -210,7 +197,7 @@ def _route_spec(
     *,
     with_scenarios: bool,
 ) -> EpisodeSpec:
-    """The episode of one route of a file, the first where none is named.
+    """Return the episode of one route of a file, the first where none is named.
 
     Raises:
         UserError: there is no such route.

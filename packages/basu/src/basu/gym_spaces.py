@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 import gymnasium
 import numpy as np
 
+from basu.conditions import STEP_S
 from basu.errors import UserError
+from basu.outcome import Status
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from basu.episode import Episode, Observation
+    from basu.routing import Route
+
+JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
+TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
+FAILED = frozenset({Status.ROUTE_DEVIATION, Status.ROUTE_BLOCKED})
 
 PREVIEW_POINTS, PREVIEW_M = 10, 5.0  # of the route ahead, and between them
 OTHERS = 8  # road users in an observation
@@ -22,54 +30,160 @@ FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS = 40.0, 20.0, 4.0  # bounds of the
 FARTHEST_M = 60.0  # likewise, of places
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reward:
+    """What a step is worth: the sum of these."""
+
+    progress: float = 0.1  # for a metre along the route
+    time: float = -0.01  # for a second
+    infraction: float = -10.0  # for an infraction of the thesis's: collisions, lights, stop signs, speeding
+    arrival: float = 10.0  # for the end of the route
+    failure: float = -10.0  # for leaving the route, or standing still for too long
+
+    def parts(self, driven_m: Any, infractions: Any, arrived: Any, failed: Any) -> dict[str, Any]:  # noqa: ANN401
+        """Return the parts of a step's reward by field; for numbers, and for arrays of many environments."""
+        return {
+            "progress": self.progress * driven_m,
+            "time": self.time * STEP_S,
+            "infraction": self.infraction * infractions,
+            "arrival": self.arrival * arrived,
+            "failure": self.failure * failed,
+        }
+
+
 class Preview:
     """Turns frames of one episode into observations."""
 
     def __init__(self, episode: Episode) -> None:
         self.episode = episode
-        route = episode.run.route
+        self._ahead = RouteAhead(episode.run.route)
+
+    def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
+        """Return the observation of a frame."""
+        limit_mps = self.episode.run.vehicle.get_speed_limit() / 3.6
+        rows = self.episode.metrics.others(seen.frame)
+        others = np.array([row[2:] for row in rows], np.float64).reshape(1, -1, 6)
+        many = self._ahead.observed(
+            EgoRows(*(np.array([getattr(seen.frame.ego, name)]) for name in EgoRows._fields)),
+            np.array([seen.progress.s_m]),
+            np.array([seen.progress.lateral_m]),
+            np.array([limit_mps]),
+            others,
+            np.ones(others.shape[:2], np.bool_),
+        )
+        return {name: values[0] for name, values in many.items()}
+
+
+class EgoRows(NamedTuple):
+    """The motion of E vehicles under test: fields of `VehicleMotion`, each an array (E,)."""
+
+    x_m: NDArray[np.float64]
+    y_m: NDArray[np.float64]
+    yaw_rad: NDArray[np.float64]
+    velocity_x_mps: NDArray[np.float64]
+    velocity_y_mps: NDArray[np.float64]
+    velocity_z_mps: NDArray[np.float64]
+    acceleration_x_mps2: NDArray[np.float64]
+    acceleration_y_mps2: NDArray[np.float64]
+    angular_velocity_z_radps: NDArray[np.float64]
+
+    @property
+    def speed_mps(self) -> NDArray[np.float64]:
+        """(E,) speeds over ground."""
+        speed_mps: NDArray[np.float64] = np.sqrt(
+            self.velocity_x_mps**2 + self.velocity_y_mps**2 + self.velocity_z_mps**2
+        )
+        return speed_mps
+
+
+class RouteAhead:
+    """Makes observations of vehicles on one route."""
+
+    def __init__(self, route: Route) -> None:
         self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
         self._yaw_rad = np.unwrap(route.yaw_rad)
         self._ahead_m = PREVIEW_M * np.arange(1, PREVIEW_POINTS + 1)
         self._boxes = _boxes()
 
-    def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
-        """The observation of a frame."""
-        ego = seen.frame.ego
-        cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
-        to_vehicle = np.array([[cos, -sin], [sin, cos]])  # world vector @ this = forward, right
-        s_m = seen.progress.s_m + self._ahead_m
-        ahead = np.column_stack([np.interp(s_m, self._s_m, self._xy_m[:, axis]) for axis in (0, 1)])
-        heading = math.remainder(ego.yaw_rad - float(np.interp(seen.progress.s_m, self._s_m, self._yaw_rad)), math.tau)
+    def observed(
+        self,
+        ego: EgoRows,
+        s_m: NDArray[np.float64],
+        lateral_m: NDArray[np.float64],
+        limit_mps: NDArray[np.float64],
+        others: NDArray[np.float64],
+        is_there: NDArray[np.bool_],
+    ) -> dict[str, NDArray[np.float32]]:
+        """Return the observations of E vehicles, each array with E as its first axis.
+
+        Args:
+            ego: their motion.
+            s_m: (E,) places along the route.
+            lateral_m: (E,) offsets from it, positive to the right.
+            limit_mps: (E,) what is posted to them; 0 for none.
+            others: (E, K, 6) x, y, z, yaw, velocity x and y of the road users near each, CARLA's frame.
+            is_there: (E, K) whether a row of ``others`` counts.
+        """
+        cos, sin = np.cos(ego.yaw_rad), np.sin(ego.yaw_rad)
+        at_m = s_m[:, None] + self._ahead_m
+        x_m, y_m = (np.interp(at_m, self._s_m, self._xy_m[:, axis]) for axis in (0, 1))
+        heading = _turned(ego.yaw_rad - np.interp(s_m, self._s_m, self._yaw_rad))
         forward_mps2 = ego.acceleration_x_mps2 * cos + ego.acceleration_y_mps2 * sin
-        limit_mps = self.episode.run.vehicle.get_speed_limit() / 3.6
-        state = (
-            ego.speed_mps,
-            forward_mps2,
-            ego.angular_velocity_z_radps,
-            seen.progress.lateral_m,
-            heading,
-            limit_mps,
-        )
+        state = (ego.speed_mps, forward_mps2, ego.angular_velocity_z_radps, lateral_m, heading, limit_mps)
         found = {
-            "ego": np.array(state),
-            "route": (ahead - (ego.x_m, ego.y_m)) @ to_vehicle,
-            "others": self._others(seen, to_vehicle),
+            "ego": np.stack(state, axis=-1),
+            "route": _in_frame(x_m, y_m, ego, cos, sin),
+            "others": self._others(ego, cos, sin, others, is_there),
         }
         return {name: _clipped(values, self._boxes[name]) for name, values in found.items()}
 
-    def _others(self, seen: Observation, to_vehicle: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(8, 6) the nearest road users."""
-        ego, table = seen.frame.ego, np.zeros((OTHERS, 6))
-        rows = self.episode.metrics.others(seen.frame)
-        if rows:
-            given = np.array([row[2:] for row in rows])  # x, y, z, yaw, velocity x, y
-            away_m = np.hypot(given[:, 0] - ego.x_m, given[:, 1] - ego.y_m)
-            given = given[np.argsort(away_m, kind="stable")[:OTHERS]]
-            turned = np.remainder(given[:, 3] - ego.yaw_rad + math.pi, math.tau) - math.pi
-            place = (given[:, :2] - (ego.x_m, ego.y_m)) @ to_vehicle
-            table[: len(given)] = np.column_stack([np.ones(len(given)), place, turned, given[:, 4:6] @ to_vehicle])
+    @staticmethod
+    def _others(
+        ego: EgoRows,
+        cos: NDArray[np.float64],
+        sin: NDArray[np.float64],
+        others: NDArray[np.float64],
+        is_there: NDArray[np.bool_],
+    ) -> NDArray[np.float64]:
+        """Return (E, 8, 6) the nearest road users of each vehicle."""
+        table = np.zeros((len(cos), OTHERS, 6))
+        kept = min(OTHERS, others.shape[1])
+        if not is_there.any():
+            return table
+        place = _in_frame(others[..., 0], others[..., 1], ego, cos, sin)
+        away_m = np.where(is_there, np.hypot(place[..., 0], place[..., 1]), np.inf)
+        velocity = np.stack(
+            [
+                others[..., 4] * cos[:, None] + others[..., 5] * sin[:, None],
+                others[..., 5] * cos[:, None] - others[..., 4] * sin[:, None],
+            ],
+            axis=-1,
+        )
+        turned = _turned(others[..., 3] - ego.yaw_rad[:, None])[..., None]
+        rows = np.concatenate([np.ones_like(turned), place, turned, velocity], axis=-1)
+        rows[~is_there] = 0.0
+        nearest = np.argsort(away_m, axis=1, kind="stable")[:, :kept]
+        table[:, :kept] = np.take_along_axis(rows, nearest[..., None], axis=1)
         return table
+
+
+def _in_frame(
+    x_m: NDArray[np.float64],
+    y_m: NDArray[np.float64],
+    ego: EgoRows,
+    cos: NDArray[np.float64],
+    sin: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return places (E, K) as (E, K, 2) in the vehicles' frames: forward, right."""
+    to_x_m, to_y_m = x_m - ego.x_m[:, None], y_m - ego.y_m[:, None]
+    cos, sin = cos[:, None], sin[:, None]
+    return np.stack([to_x_m * cos + to_y_m * sin, to_y_m * cos - to_x_m * sin], axis=-1)
+
+
+def _turned(angle_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return angles within -pi..pi."""
+    turned: NDArray[np.float64] = np.remainder(angle_rad + math.pi, math.tau) - math.pi
+    return turned
 
 
 def control_from(action: ArrayLike) -> carla.VehicleControl:
@@ -78,19 +192,40 @@ def control_from(action: ArrayLike) -> carla.VehicleControl:
     Raises:
         UserError: the action has another shape, is no number, or lies outside of the space.
     """
+    throttle, steer, brake = controls_from(action, ()).tolist()
+    return carla.VehicleControl(throttle=throttle, brake=brake, steer=steer)
+
+
+def controls_from(action: ArrayLike, batch: tuple[int, ...]) -> NDArray[np.float64]:
+    """Return throttle, steer and brake (..., 3) of actions (..., 2), pedals and steer in -1..1, of a ``batch``.
+
+    Raises:
+        UserError: the actions have another shape, are no numbers, or lie outside of the space.
+    """
+    what, shape = ("the action", "two numbers") if not batch else ("an action", f"{batch[0]} pairs of numbers")
     try:
-        values = np.asarray(action, dtype=np.float64)
+        values = np.asarray(action)
     except (TypeError, ValueError):
-        raise UserError(f"the action is {action!r}; give two numbers in -1..1, [pedals, steer]") from None
-    if values.shape != (2,):
-        raise UserError(f"the action has the shape {values.shape}; give (2,), [pedals, steer]")
-    if not np.all(np.abs(values) <= 1.0):  # false for NaN
-        given = ", ".join(f"{value:g}" for value in values)
+        values = np.array(None)
+    if values.dtype.kind not in "biuf":
+        raise UserError(f"{what} is {_short(action)}; give {shape} in -1..1, [pedals, steer]")
+    if values.shape != (*batch, 2):
+        raise UserError(f"{what} has the shape {values.shape}; give {(*batch, 2)}, [pedals, steer]")
+    values = values.astype(np.float64)
+    wrong = np.argwhere(~(np.abs(values) <= 1.0).all(axis=-1))  # NaN is wrong as well
+    if len(wrong):
+        given = ", ".join(f"{value:g}" for value in values[tuple(wrong[0])])
+        where = f" of environment {wrong[0][0]}" if batch else ""
         raise UserError(
-            f"the action is [{given}]; both numbers must be in -1..1 (to clip them: gymnasium.wrappers.ClipAction)"
+            f"{what}{where} is [{given}]; both numbers must be in -1..1 (to clip them: gymnasium.wrappers.ClipAction)"
         )
-    pedals, steer = values.tolist()
-    return carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)
+    pedals, steer = values[..., 0], values[..., 1]
+    return np.stack([np.maximum(0.0, pedals), steer, np.maximum(0.0, -pedals)], axis=-1)
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def action_space() -> gymnasium.spaces.Space[NDArray[np.float32]]:

@@ -25,6 +25,8 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.sensors.casting.thread_pool import in_stretches
 from linden.simulation.below_ground import DEEP_M
+from linden.simulation.episode import limits_of_lanes_kmh
+from linden.simulation.snapshot_rows import limits_under
 from linden.simulation.spawning import NEEDS_ROOM, bodies_at, embody, scenery_at
 from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
@@ -89,6 +91,7 @@ class Worlds:
         self._frames = np.zeros(self.count, np.int64)
         self._gpu = _gpu(self.map.ground, self._scenery.statics) if device == "cuda" else None
         self._host_is_current = True
+        self._limit_of_lane_kmh: F64 | None = None
         self._all = np.arange(self.count, dtype=np.int32)
 
     # -- actors --------------------------------------------------------------------------------------------------------
@@ -268,6 +271,16 @@ class Worlds:
         self._table.spec_of[chosen] = self._first.spec_of[chosen]
         self._begin(chosen)
 
+    def keep(self, worlds: Chosen = None) -> None:
+        """Let a later :meth:`reset` bring ``worlds`` back to the state that they are in now.
+
+        Raises:
+            UserError: there is no such world.
+        """
+        chosen = self._chosen(worlds)
+        self._edit()
+        self._keep_as_first(chosen)
+
     def clear(self, worlds: Chosen = None) -> None:
         """Take all actors out of ``worlds``.
 
@@ -361,6 +374,23 @@ class Worlds:
         known, which = np.unique(self.frames, return_inverse=True)
         colours: NDArray[np.uint8] = np.stack([self._colours[frame] for frame in known])[which.reshape(-1)]
         return colours
+
+    def heed_limits(self, limits_kmh: F64, slot: int = 0) -> None:
+        """Bring the limits ``limits_kmh`` (W,), posted to the vehicles in a slot of all worlds, up to date in place.
+
+        Off the road, in a junction and where the map posts none, the last one holds, as for the server's vehicles.
+
+        Raises:
+            UserError: the slot holds no vehicle in a world, or the array has another shape or type.
+        """
+        rows = self._rows(slot, self._all, VEHICLE)
+        if limits_kmh.shape != (self.count,) or limits_kmh.dtype != np.float64:
+            raise UserError(f"limits_kmh needs an array ({self.count},) of float64, not {_short(limits_kmh)}")
+        self._read()
+        if self._limit_of_lane_kmh is None:
+            self._limit_of_lane_kmh = limits_of_lanes_kmh(self.map)
+        position_m = self._table.state.reshape(-1)["position"]
+        limits_under(self.map.ground, self.map.lane_of_triangle, self._limit_of_lane_kmh, position_m, rows, limits_kmh)
 
     @property
     def nbytes(self) -> int:

@@ -10,10 +10,11 @@ import carla
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
 from basu.managers.observations import NO_LANE, LaneFinder
-from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S, time_limit_s
+from basu.metrics.delays import BLOCKED_MPS, time_limit_s
+from basu.metrics.ending import ARRIVED, BLOCKED, GOES_ON, LEFT_OUT, LOST, STATUS_OF, STOPPED, ending_of
 from basu.metrics.path_following import has_arrived
-from basu.metrics.validity import LOST_M, Follower, Moment
-from basu.outcome import Outcome, Status
+from basu.metrics.validity import Follower, Moment
+from basu.outcome import Outcome
 from basu.routing.planned_route import Progress, advance
 from basu.routing.weather import weather_at
 
@@ -102,43 +103,40 @@ class RoutesManager(BaseManager):
             raise SimulatorError(f"the simulator did not take the weather of the route: {error}") from error
 
     def _judge(self, tick: int, speed_mps: float) -> Outcome | None:
-        """The end of the run, if this is it."""
-        remaining_m = self._route.length_m - self.progress.s_m
-        if self.valid.check.valid and has_arrived(remaining_m, speed_mps):
-            return self._end_of_route(tick)
-        if tick * self._step_s >= self._stop_after_s - self._step_s / 2.0:
-            return Outcome(
-                Status.STOPPED,
-                f"stopped after {self._stop_after_s:g} s at {self.progress.s_m:.0f} m of the route's "
-                f"{self._route.length_m:.0f} m, as --stop-after asks",
-            )
-        if self.progress.distance_m > LOST_M:
-            return Outcome(
-                Status.ROUTE_DEVIATION,
-                f"{self.progress.distance_m:.0f} m off the route at {self.progress.s_m:.0f} m of its "
-                f"{self._route.length_m:.0f} m",
-            )
+        """Return the end of the run, if this is it."""
+        remaining_m, t_s = self._route.length_m - self.progress.s_m, tick * self._step_s
         still_s = (tick - self._moved_tick) * self._step_s
-        if still_s > BLOCKED_S:
-            return Outcome(
-                Status.ROUTE_BLOCKED, f"stood still for {still_s:.0f} s at {self.progress.s_m:.0f} m of the route"
-            )
-        if tick * self._step_s > self._limit_s:
-            return Outcome(
-                Status.ROUTE_TIMEOUT,
-                f"{self.progress.s_m:.0f} m of {self._route.length_m:.0f} m after {self._limit_s:.0f} s",
-            )
-        return None
-
-    def _end_of_route(self, tick: int) -> Outcome:
-        """The outcome of a vehicle at the end of its route, by whichever way it came there."""
-        gaps = self.valid.gaps
-        if not gaps:
-            return Outcome(Status.COMPLETED, f"arrived after {tick * self._step_s:.1f} s")
-        longest = max(gaps, key=lambda gap: gap.length_m)
-        return Outcome(
-            Status.ROUTE_DEVIATION,
-            f"came to the end of the route, but did not drive {sum(gap.length_m for gap in gaps):.0f} m of its "
-            f"{self._route.length_m:.0f} m on its lanes: {longest.from_s_m:.0f} m to {longest.to_s_m:.0f} m and "
-            f"{len(gaps) - 1} shorter pieces",
+        ending = ending_of(
+            self.valid.check.valid and has_arrived(remaining_m, speed_mps),
+            len(self.valid.gaps),
+            self.progress.distance_m,
+            still_s,
+            t_s,
+            self._limit_s,
+            self._stop_after_s - self._step_s / 2.0,
         )
+        return None if ending == GOES_ON else Outcome(STATUS_OF[ending], self._sentence(ending, t_s, still_s))
+
+    def _sentence(self, ending: int, t_s: float, still_s: float) -> str:
+        """Return the end of the run in words."""
+        s_m, length_m = self.progress.s_m, self._route.length_m
+        if ending == ARRIVED:
+            return f"arrived after {t_s:.1f} s"
+        if ending == LEFT_OUT:
+            gaps = self.valid.gaps
+            longest = max(gaps, key=lambda gap: gap.length_m)
+            return (
+                f"came to the end of the route, but did not drive {sum(gap.length_m for gap in gaps):.0f} m of its "
+                f"{length_m:.0f} m on its lanes: {longest.from_s_m:.0f} m to {longest.to_s_m:.0f} m and "
+                f"{len(gaps) - 1} shorter pieces"
+            )
+        if ending == STOPPED:
+            return (
+                f"stopped after {self._stop_after_s:g} s at {s_m:.0f} m of the route's {length_m:.0f} m, "
+                "as --stop-after asks"
+            )
+        if ending == LOST:
+            return f"{self.progress.distance_m:.0f} m off the route at {s_m:.0f} m of its {length_m:.0f} m"
+        if ending == BLOCKED:
+            return f"stood still for {still_s:.0f} s at {s_m:.0f} m of the route"
+        return f"{s_m:.0f} m of {length_m:.0f} m after {self._limit_s:.0f} s"

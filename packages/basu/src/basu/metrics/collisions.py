@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from basu.metrics.fault import responsibility
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, Responsibility, evidence
@@ -50,9 +50,14 @@ def beginnings(history: History, latest: dict[Party, int]) -> tuple[Collision, .
         party, tick = (event.other_id, event.other_type), int(ticks[event.tick])
         before = latest.get(party)
         latest[party] = tick
-        if before is None or (tick - before) * history.facts.step_s > SEPARATE_AFTER_S:
+        if before is None or is_separate(tick - before, history.facts.step_s):
             found.append(event)
     return tuple(found)
+
+
+def is_separate(ticks: Any, step_s: float) -> Any:  # noqa: ANN401 - a number or an array
+    """Return whether a message begins another contact, ``ticks`` after the party's latest one."""
+    return ticks * step_s > SEPARATE_AFTER_S
 
 
 def kind_of(other_type: str) -> Infraction:

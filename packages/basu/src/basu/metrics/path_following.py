@@ -26,7 +26,7 @@ AT_END_M, PARKED_M = 1.0, 5.0
 SERVED_M = 3.0
 
 
-def has_arrived(left_m: float, speed_mps: float, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:
+def has_arrived(left_m: float, speed_mps: float, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:
     """Whether a vehicle on its route with ``left_m`` ahead has arrived; the slacks widen the end and the rest."""
     return left_m <= AT_END_M + slack_m or (left_m <= PARKED_M and speed_mps < AT_REST_MPS + slack_mps)
 

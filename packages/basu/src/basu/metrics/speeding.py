@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -64,12 +64,10 @@ class EpisodeFinder:
 
     def step(self, tick: int, speed_mps: float, limit_mps: float) -> list[Excess]:
         """Take in a frame and return the pieces of the episode that it ended; none for one that goes on."""
-        if speed_mps <= limit_mps:
+        if not exceeds(speed_mps, limit_mps, self._tolerance_mps, bool(self.pieces)):
             ended, self.pieces = self.counted(), []
             return ended
-        if not self.pieces and speed_mps <= limit_mps + self._tolerance_mps:
-            return []
-        if not self.pieces or self.pieces[-1].gained_m >= SHARE_M:
+        if not self.pieces or is_whole(self.pieces[-1].gained_m):
             self.pieces.append(Excess(tick, tick, speed_mps, limit_mps, 0.0))
         piece = self.pieces[-1]
         piece.end, piece.gained_m = tick + 1, piece.gained_m + (speed_mps - limit_mps) * self._step_s
@@ -79,9 +77,27 @@ class EpisodeFinder:
 
     def counted(self) -> list[Excess]:
         """The pieces of the open episode; none where it is too short to count."""
-        if not self.pieces or (self.pieces[-1].end - self.pieces[0].first) * self._step_s < LEAST_S:
+        if not self.pieces or not lasts(self.pieces[0].first, self.pieces[-1].end, self._step_s):
             return []
         return self.pieces
+
+
+# For numbers, and for arrays of the vehicles of `linden_gym`.
+
+
+def exceeds(speed_mps: Any, limit_mps: Any, tolerance_mps: float, is_open: Any) -> Any:  # noqa: ANN401 - either
+    """Return whether a frame belongs to an episode, where ``is_open`` says that one goes on."""
+    return (speed_mps > limit_mps) & (is_open | (speed_mps > limit_mps + tolerance_mps))
+
+
+def is_whole(gained_m: Any) -> Any:  # noqa: ANN401 - a number or an array
+    """Return whether a piece has its whole way, so that another one begins."""
+    return gained_m >= SHARE_M
+
+
+def lasts(first_tick: Any, end_tick: Any, step_s: float) -> Any:  # noqa: ANN401 - numbers or arrays
+    """Return whether an episode is long enough to count."""
+    return (end_tick - first_tick) * step_s >= LEAST_S
 
 
 def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Evidence, ...]:
@@ -109,9 +125,15 @@ def limits_mps(history: History) -> NDArray[np.float64]:
     route = history.facts.route
     posted = history.frames["speed_limit_mps"].astype(np.float64)
     index = np.clip(np.searchsorted(route.s_m, history.frames["route_s_m"], side="right") - 1, 0, None)
-    planned = route.speed_limit_mps[index]
-    elsewhere = np.where(posted > 0.0, posted, np.inf)
-    return np.where(~in_planned_lane(history) | np.isnan(planned), elsewhere, planned)
+    return holding_mps(route.speed_limit_mps[index], posted, in_planned_lane(history))
+
+
+def holding_mps(
+    planned_mps: NDArray[np.float64], posted_mps: NDArray[np.float64], in_lane: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Return (T,) the limits that hold, of the planned lane (nan for none) and posted to the vehicle (0 for none)."""
+    elsewhere = np.where(posted_mps > 0.0, posted_mps, np.inf)
+    return np.where(~in_lane | np.isnan(planned_mps), elsewhere, planned_mps)
 
 
 class SpeedingSoFar:

@@ -59,7 +59,7 @@ def signs_passed(history: History) -> tuple[SignPassed, ...]:
         if crossing is None:
             continue
         ahead_m = sign.s_m - front_s_m[: crossing + 1]
-        zone = np.flatnonzero((ahead_m <= ZONE_BEFORE_M) & (ahead_m >= -ZONE_BEYOND_M))
+        zone = np.flatnonzero(in_zone(ahead_m))
         zone = zone[counts_at(history, zone)]
         slowest = int(zone[np.argmin(speed_mps[zone])]) if len(zone) else crossing
         found.append(
@@ -73,6 +73,12 @@ def signs_passed(history: History) -> tuple[SignPassed, ...]:
             )
         )
     return tuple(found)
+
+
+def in_zone(ahead_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return whether a stop counts where the front bumper has ``ahead_m`` to the line, negative beyond it."""
+    within: NDArray[np.bool_] = (ahead_m <= ZONE_BEFORE_M) & (ahead_m >= -ZONE_BEYOND_M)
+    return within
 
 
 def stop_signs(history: History) -> tuple[Evidence, ...]:

@@ -121,7 +121,7 @@ class Follower:
     """
 
     def __init__(self, route: Route) -> None:
-        self._lanes = _Lanes(route)
+        self._lanes = PlannedLanes(route)
         self._before: Moment | None = None
         self._ticks = 0
         self._spare_m = PASSING_M  # that the vehicle may still drive off its lane
@@ -141,33 +141,30 @@ class Follower:
         check = self.check = self._lanes.check(moment, before)
         if before is None:
             self.reached_m = moment.route_s_m
-        elif not check.in_lane:
-            self._all_beside = check.beside and (was_valid or self._all_beside)
-        elif moment.route_s_m > self.reached_m:
-            self._advance(
-                moment.route_s_m, continuous=was_valid and check.valid, beside=self._all_beside and check.valid
+        else:
+            begin_m = self.reached_m
+            self._spare_m, self._all_beside, self.reached_m, gap_m = followed(
+                moment.route_s_m,
+                check.in_lane,
+                check.valid,
+                check.beside,
+                was_valid,
+                self._spare_m,
+                self._all_beside,
+                begin_m,
             )
+            if gap_m:
+                self.gaps.append(Gap(begin_m, self.reached_m, self._ticks))
         self._ticks += 1
         return check
 
-    def _advance(self, s_m: float, *, continuous: bool, beside: bool) -> None:
-        """Take in the way to ``s_m``, or note that it was not driven; ``beside`` says that it may have been passing."""
-        way_m = s_m - self.reached_m
-        if continuous:
-            self._spare_m = min(PASSING_M, self._spare_m + way_m)
-        elif way_m <= min(self._spare_m, PASSING_M if beside else SLIP_M):
-            self._spare_m -= way_m
-        else:
-            self.gaps.append(Gap(self.reached_m, s_m, self._ticks))
-        self.reached_m = s_m
 
-
-class _Lanes:
+class PlannedLanes:
     """The planned lanes as plain lists: one frame is faster to check with them than with arrays."""
 
     def __init__(self, route: Route) -> None:
         self._s_m: list[float] = route.s_m.tolist()
-        self._width_m: list[float] = _widths_m(route).tolist()
+        self._width_m: list[float] = widths_m(route).tolist()
         self._yaw_rad: list[float] = route.yaw_rad.tolist()
         self._side = [
             (road, lane > 0) for road, lane in zip(route.road_id.tolist(), route.lane_id.tolist(), strict=True)
@@ -177,42 +174,86 @@ class _Lanes:
         """Check one frame; ``before`` is the frame before it, None for the first."""
         at = max(0, bisect_right(self._s_m, moment.route_s_m) - 1)
         width_m = self._width_m[at]
-        against = self._against(moment, self._yaw_rad[at])
-        beyond_m = abs(moment.lateral_m) - width_m / 2.0
-        if beyond_m <= BEYOND_M or self._in_lane_of_same_side(moment, at):
+        against = is_against(moment.yaw_rad, moment.velocity_x_mps, moment.velocity_y_mps, self._yaw_rad[at])
+        beyond_m = too_far_beyond_m(moment.lateral_m, width_m)
+        if beyond_m and self.in_lane_of_same_side(
+            at, moment.road_id, moment.lane_id, moment.in_junction, moment.off_lane_m
+        ):
             beyond_m = 0.0
-        jump_m = 0.0 if before is None else _jump_m(moment, before)
-        on_lanes = moment.off_lane_m <= BEYOND_M and beyond_m <= width_m + BEYOND_M
-        return Check(beyond_m, against, jump_m, beside=on_lanes and beyond_m > 0.0 and not (against or jump_m))
+        jump_m = 0.0
+        if before is not None:
+            jump_m = jumped_m(moment.route_s_m - before.route_s_m, moment.x_m - before.x_m, moment.y_m - before.y_m)
+        return Check(beyond_m, against, jump_m, is_beside(moment.off_lane_m, beyond_m, width_m, against, jump_m))
 
-    def _in_lane_of_same_side(self, moment: Moment, at: int) -> bool:
-        """Whether the vehicle is in any lane of the planned road in the planned direction."""
-        if moment.off_lane_m > BEYOND_M or moment.in_junction or moment.lane_id == 0:
+    def in_lane_of_same_side(self, at: int, road_id: int, lane_id: int, in_junction: int, off_lane_m: float) -> bool:
+        """Whether a vehicle at point ``at`` is in any lane of the planned road in the planned direction."""
+        if off_lane_m > BEYOND_M or in_junction or lane_id == 0:
             return False
         near = self._side[max(0, at - NEAR_POINTS) : at + NEAR_POINTS + 1]
-        return (moment.road_id, moment.lane_id > 0) in near
-
-    def _against(self, moment: Moment, planned_rad: float) -> bool:
-        """Whether the vehicle points or moves against the route."""
-        if math.cos(moment.yaw_rad - planned_rad) < _AGAINST:
-            return True
-        speed_mps = math.hypot(moment.velocity_x_mps, moment.velocity_y_mps)
-        along_mps = moment.velocity_x_mps * math.cos(planned_rad) + moment.velocity_y_mps * math.sin(planned_rad)
-        return speed_mps > AT_REST_MPS and along_mps < _AGAINST * speed_mps
+        return (road_id, lane_id > 0) in near
 
 
-def _widths_m(route: Route) -> NDArray[np.float64]:
-    """Return (N,) the widths of the lanes under the route, 0 if unknown: then the plan is the track of the drive."""
-    return np.nan_to_num(route.lane_width_m, nan=0.0)
+# Numbers to numbers: `linden_gym` compiles these for many vehicles at once.
 
 
-def _jump_m(moment: Moment, before: Moment) -> float:
-    """The growth of the progress in one frame, where it is far ahead of the vehicle's own way; 0 otherwise."""
-    grown_m = moment.route_s_m - before.route_s_m
+def is_against(yaw_rad: float, velocity_x_mps: float, velocity_y_mps: float, planned_rad: float) -> bool:
+    """Return whether a vehicle points or moves against the route's direction ``planned_rad``."""
+    if math.cos(yaw_rad - planned_rad) < _AGAINST:
+        return True
+    speed_mps = math.hypot(velocity_x_mps, velocity_y_mps)
+    along_mps = velocity_x_mps * math.cos(planned_rad) + velocity_y_mps * math.sin(planned_rad)
+    return speed_mps > AT_REST_MPS and along_mps < _AGAINST * speed_mps
+
+
+def too_far_beyond_m(lateral_m: float, width_m: float) -> float:
+    """Return how far a vehicle is beyond the edge of the planned lane, where that is too far; 0 otherwise."""
+    beyond_m = abs(lateral_m) - width_m / 2.0
+    return beyond_m if beyond_m > BEYOND_M else 0.0
+
+
+def jumped_m(grown_m: float, moved_x_m: float, moved_y_m: float) -> float:
+    """Return the growth of the progress in one frame, where it is far ahead of the vehicle's own way; 0 otherwise."""
     if grown_m <= SLIP_M:
         return 0.0
-    moved_m = math.hypot(moment.x_m - before.x_m, moment.y_m - before.y_m)
-    return grown_m if grown_m > LEAP * moved_m + SLIP_M else 0.0
+    return grown_m if grown_m > LEAP * math.hypot(moved_x_m, moved_y_m) + SLIP_M else 0.0
+
+
+def is_beside(off_lane_m: float, beyond_m: float, width_m: float, against: bool, jump_m: float) -> bool:  # noqa: FBT001 - compiled
+    """Return whether a vehicle off its lane is in the lane beside."""
+    on_lanes = off_lane_m <= BEYOND_M and beyond_m <= width_m + BEYOND_M
+    return on_lanes and beyond_m > 0.0 and not against and jump_m == 0.0
+
+
+def followed(
+    s_m: float,
+    in_lane: bool,  # noqa: FBT001 - compiled
+    valid: bool,  # noqa: FBT001 - likewise
+    beside: bool,  # noqa: FBT001 - likewise
+    was_valid: bool,  # noqa: FBT001 - likewise
+    spare_m: float,
+    all_beside: bool,  # noqa: FBT001 - likewise
+    reached_m: float,
+) -> tuple[float, bool, float, float]:
+    """Return the spare way, whether all since the lane was left lay beside it, the place reached, and a new gap in m.
+
+    The first four describe a frame, as `Check` has them. The others describe the drive until then, as `Follower` has
+    them.
+    """
+    if not in_lane:
+        return spare_m, beside and (was_valid or all_beside), reached_m, 0.0
+    way_m = s_m - reached_m
+    if way_m <= 0.0:
+        return spare_m, all_beside, reached_m, 0.0
+    if was_valid and valid:
+        return min(PASSING_M, spare_m + way_m), all_beside, s_m, 0.0
+    if way_m <= min(spare_m, PASSING_M if all_beside and valid else SLIP_M):
+        return spare_m - way_m, all_beside, s_m, 0.0
+    return spare_m, all_beside, s_m, way_m
+
+
+def widths_m(route: Route) -> NDArray[np.float64]:
+    """Return (N,) the widths of the lanes under the route, 0 if unknown: then the plan is the track of the drive."""
+    return np.nan_to_num(route.lane_width_m, nan=0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -266,7 +307,7 @@ def moments(frames: StructuredArray) -> Iterator[Moment]:
 
 def counts_at(history: History, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
     """(K,) whether each frame of ``ticks`` counts, judged by itself: cheaper than `validity` for a few of them."""
-    lanes = _Lanes(history.facts.route)
+    lanes = PlannedLanes(history.facts.route)
     return np.array([lanes.check(moment, None).valid for moment in moments(history.frames[ticks])], dtype=np.bool_)
 
 
@@ -274,7 +315,7 @@ def beyond_edge_m(history: History) -> NDArray[np.float64]:
     """(T,) how far the vehicle's origin is beyond the edge of the planned lane; negative within it."""
     route, frames = history.facts.route, history.frames
     index = np.clip(np.searchsorted(route.s_m, frames["route_s_m"], side="right") - 1, 0, None)
-    beyond_m: NDArray[np.float64] = np.abs(frames["lateral_m"]) - _widths_m(route)[index] / 2.0
+    beyond_m: NDArray[np.float64] = np.abs(frames["lateral_m"]) - widths_m(route)[index] / 2.0
     return beyond_m
 
 

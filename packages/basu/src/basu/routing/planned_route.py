@@ -128,8 +128,8 @@ def advance(route: Route, before: Progress, x_m: float, y_m: float) -> Progress:
     A vehicle that left the route is searched for farther ahead, as far again as it is away, so that it may come back
     beyond what it went round.
     """
-    first = max(0, int(np.searchsorted(route.s_m, before.s_m - BACK_M)) - 1)
-    ahead_m = before.s_m + AHEAD_M + 2.0 * before.distance_m
+    back_m, ahead_m = search_window(before.s_m, before.distance_m)
+    first = max(0, int(np.searchsorted(route.s_m, back_m)) - 1)
     end = min(len(route.s_m), int(np.searchsorted(route.s_m, ahead_m)) + 1)
     points_m = route.points_m
     away2 = (points_m[first:end, 0] - x_m) ** 2 + (points_m[first:end, 1] - y_m) ** 2
@@ -146,13 +146,27 @@ def _distance(place: Progress) -> float:
 
 def _on_segment(route: Route, index: int, x_m: float, y_m: float) -> Progress:
     """Return the nearest place on the segment from point ``index`` to the next."""
-    x0_m, y0_m = float(route.points_m[index, 0]), float(route.points_m[index, 1])
-    along_x_m = float(route.points_m[index + 1, 0]) - x0_m
-    along_y_m = float(route.points_m[index + 1, 1]) - y0_m
+    (x0_m, y0_m, _), (x1_m, y1_m, _) = route.points_m[index : index + 2].tolist()
+    return Progress(*foot_on_segment(float(route.s_m[index]), x0_m, y0_m, x1_m, y1_m, x_m, y_m))
+
+
+# Numbers to numbers: `linden_gym` compiles these for many vehicles at once.
+
+
+def search_window(s_m: float, distance_m: float) -> tuple[float, float]:
+    """Return from where to where along the route the next place is searched for, after a place at ``s_m``."""
+    return s_m - BACK_M, s_m + AHEAD_M + 2.0 * distance_m
+
+
+def foot_on_segment(
+    s_m: float, x0_m: float, y0_m: float, x1_m: float, y1_m: float, x_m: float, y_m: float
+) -> tuple[float, float, float]:
+    """Return the values of `Progress` at the place nearest to (x, y) on a segment that begins at ``s_m``."""
+    along_x_m, along_y_m = x1_m - x0_m, y1_m - y0_m
     length_m = math.hypot(along_x_m, along_y_m)
     to_x_m, to_y_m = x_m - x0_m, y_m - y0_m
     share = min(1.0, max(0.0, (to_x_m * along_x_m + to_y_m * along_y_m) / (length_m * length_m)))
     off_x_m, off_y_m = to_x_m - share * along_x_m, to_y_m - share * along_y_m
     right = along_x_m * off_y_m - along_y_m * off_x_m  # y points south: positive is to the right
     distance_m = math.hypot(off_x_m, off_y_m)
-    return Progress(float(route.s_m[index]) + share * length_m, math.copysign(distance_m, right), distance_m)
+    return s_m + share * length_m, math.copysign(distance_m, right), distance_m

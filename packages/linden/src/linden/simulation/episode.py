@@ -34,6 +34,16 @@ _MOTION = np.dtype(
 )
 
 
+def limits_of_lanes_kmh(world_map: LoadedMap) -> NDArray[np.float64]:
+    """Return the limit (L,) of each lane of a map for `limits_under`, nan for none.
+
+    Lanes in a junction lie over one another: there the limit of the way in goes on.
+    """
+    lanes = world_map.lanes
+    limits: NDArray[np.float64] = np.where(lanes["junction"] < 0, lanes["speed_limit_mps"] * _MPS_TO_KMH, np.nan)
+    return limits
+
+
 class Episode(EpisodeState):
     """Everything that ends with a load.
 
@@ -66,8 +76,7 @@ class Episode(EpisodeState):
             first_light, first_light + len(self.light_ids)
         )  # they come one after the other, to stay
         self._light_actor_id = np.array(self.light_ids, np.int32)
-        lanes = world_map.lanes  # those in a junction lie over one another: there the limit of the way in goes on
-        self._limit_of_lane_kmh = np.where(lanes["junction"] < 0, lanes["speed_limit_mps"] * _MPS_TO_KMH, np.nan)
+        self._limit_of_lane_kmh = limits_of_lanes_kmh(world_map)
         self._speed_limit_kmh: dict[int, float] = {}
         self._seen_version = -1
 
