@@ -1,6 +1,6 @@
 """`WorldsVectorEnv`: many gymnasium environments on `linden.Worlds`, in one process, without a server or a client.
 
-Actions, observations, rewards and ends are those of `basu.gym`, whose docstring has shapes and units. The ``info`` has
+Actions, observations, rewards and ends are those of `basu.gym`; its docstring has shapes and units. The ``info`` has
 arrays with one value for each environment: ``route_s_m``, ``infractions`` (how many are new), ``reward_parts``, and
 at the end of an episode ``outcome``. There is no ``passed``: that needs the record of a drive.
 """

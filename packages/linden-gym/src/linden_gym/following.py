@@ -77,7 +77,7 @@ def locate(
     x_m: F64,
     y_m: F64,
 ) -> None:  # pragma: no cover - compiled
-    """Advance the places of vehicles (K,) at (x, y), whose drives are in ``rows``, along the route of N points."""
+    """Advance the places of vehicles (K,) at (x, y), with drives in ``rows``, along the route of N points."""
     last = len(route_s_m) - 1
     for k in range(len(rows)):
         drive = drives[rows[k]]
@@ -129,7 +129,7 @@ def judge(
     """Check the frames of vehicles (K,) after `locate`, add their way, and note how drives end.
 
     ``before_s_m`` are the places of the frames before. ``off_lane_m`` and ``same_side`` are read where a vehicle is too
-    far beyond its lane: how far it is from all lanes, and whether it is in another lane of the planned road and side.
+    far beyond its lane. They say how far it is from all lanes, and whether it is in another lane of the planned road.
     """
     for k in range(len(rows)):
         drive = drives[rows[k]]
