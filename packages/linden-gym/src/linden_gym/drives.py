@@ -33,7 +33,7 @@ SCENERY_KINDS = 256
 """Parties before the bodies in slots: the kinds of scenery, each of which counts as one."""
 
 EPISODE = np.dtype([("is_open", "?"), ("first", "i8"), ("end", "i8"), ("pieces", "i8"), ("gained_m", "f8")])
-"""An episode of speeding, as `basu.metrics.speeding.Episode` has it."""
+"""An episode of speeding, as `basu.metrics.speeding.EpisodeFinder` has it."""
 
 
 class Drives:

@@ -76,6 +76,7 @@ class WatchManager(BaseManager):
         self._signals: list[int] = []
         self._accelerations: list[float] = []
         self._marks = 0
+        self._has_shown = False
 
     def setup(self, run: Run) -> None:
         """Open the page's port; if a person drives, wait until a page is open.
@@ -139,6 +140,9 @@ class WatchManager(BaseManager):
     def close(self) -> None:
         """Close the page's port; open pages say that the drive has ended."""
         if self._link is not None:
+            if self._has_shown:  # what happened since the last look at the record
+                self._judge.refresh(time.perf_counter(), anyway=True)
+                self._tell_marks(self._link)
             self._link.close()
             self._link = None
 
@@ -163,15 +167,13 @@ class WatchManager(BaseManager):
             self._tell_actors()
         both = np.concatenate([ego_rows(self._recorded(frame)), other_rows(as_others(rows))])
         link.frame(poses.message(frame.tick, frame.tick * self._run.step_s, both))
+        self._has_shown = True
         is_last = self._live.routes.outcome is not None
         if now_s >= self._panel_next_s or is_last:
             self._panel_next_s = now_s + PANEL_EVERY_S
             self._judge.refresh(now_s, anyway=is_last)
             link.note(self._panel(frame))
-            found = self._judge.latest.found
-            if len(found) != self._marks:
-                self._marks = len(found)
-                link.note({"type": "marks", "marks": [mark_of(each) for each in found]})
+            self._tell_marks(link)
         if now_s >= self._weather_next_s:
             self._weather_next_s = now_s + WEATHER_EVERY_S
             weather = self._run.world.get_weather()
@@ -181,6 +183,13 @@ class WatchManager(BaseManager):
             self._readings_next_s = now_s + READINGS_EVERY_S
             self._show_readings(link, frame, rows, now_s)
             self._show_sensors(link)
+
+    def _tell_marks(self, link: PageLink) -> None:
+        """Send all infractions so far, if there are others than before."""
+        found = self._judge.latest.found
+        if len(found) != self._marks:
+            self._marks = len(found)
+            link.note({"type": "marks", "marks": [mark_of(each) for each in found]})
 
     def _show_readings(self, link: PageLink, frame: Frame, rows: list[tuple[float, ...]], now_s: float) -> None:
         """Send figures, the state of traffic lights, and a sentence if the driver has changed."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.managers import routes_manager
+from basu.metrics import ending
 from basu.records.history import History
 from basu.records.history.files import read_history
 from servers import RunningServer
@@ -159,7 +159,7 @@ def test_the_deviating_agent_makes_the_thesiss_row(
     simulator: RunningServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its run ends after 20 s at rest, not after 180: it rests at a house."""
-    monkeypatch.setattr(routes_manager, "BLOCKED_S", 20.0)
+    monkeypatch.setattr(ending, "BLOCKED_S", 20.0)
     address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
     main(["run", "deviating", "--in-process", *address, "--output", str(tmp_path)])
     result = json.loads((tmp_path / "latest" / "result.json").read_text())
