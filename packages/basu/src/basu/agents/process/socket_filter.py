@@ -21,7 +21,9 @@ ALLOW, ERRNO = 0x7FFF0000, 0x00050000  # SECCOMP_RET_ALLOW, SECCOMP_RET_ERRNO: t
 LOAD, JUMP_EQUAL, JUMP_AT_LEAST, JUMP_BITS, MASK, RETURN = 0x20, 0x15, 0x35, 0x45, 0x54, 0x06  # BPF_LD|W|ABS and so on
 NUMBER_AT, ARCHITECTURE_AT, ARGUMENTS_AT = 0, 4, 16  # in struct seccomp_data; the low halves of arguments are read
 
-MPTCP, SMC = 262, 43  # IPPROTO_MPTCP, AF_SMC
+MPTCP, SMC_PROTOCOL = 262, 256  # IPPROTO_MPTCP; IPPROTO_SMC, since Linux 6.11
+SMC, XDP = 43, 44  # AF_SMC, AF_XDP
+SOCK_PACKET = 10  # the kernel makes a socket of AF_PACKET of one of AF_INET with this type
 TYPE_BITS = 0xF  # of the type of a socket; SOCK_NONBLOCK and SOCK_CLOEXEC are above them
 FAST_OPEN = 0x20000000  # MSG_FASTOPEN
 TCP_ULP = 31  # an option that makes another kind of socket of one of TCP, such as SMC
@@ -66,7 +68,7 @@ def filter_sockets() -> bool:
 
 def program(machine: _Machine) -> bytes:
     """Return the filter's instructions (``struct sock_filter``, 8 bytes each) for an architecture."""
-    inet = (socket.AF_INET, socket.AF_INET6)
+    inet, raw = (socket.AF_INET, socket.AF_INET6), (socket.SOCK_RAW, SOCK_PACKET)
     return b"".join(
         (
             _step(LOAD, ARCHITECTURE_AT),
@@ -78,13 +80,13 @@ def program(machine: _Machine) -> bytes:
             _for_call(IO_URING_SETUP, _refuse(errno.ENOSYS)),
             _for_call(
                 machine.socket,
-                *(_if_argument(0, family, _refuse(errno.EAFNOSUPPORT)) for family in (SMC, socket.AF_PACKET)),
+                *(_if_argument(0, family, _refuse(errno.EAFNOSUPPORT)) for family in (SMC, socket.AF_PACKET, XDP)),
                 *(
                     _if_argument(
                         0,
                         family,
-                        _if_argument(1, socket.SOCK_RAW, _refuse(errno.EPERM), bits=TYPE_BITS),
-                        _if_argument(2, MPTCP, _refuse(errno.EPROTONOSUPPORT)),
+                        *(_if_argument(1, kind, _refuse(errno.EPERM), bits=TYPE_BITS) for kind in raw),
+                        *(_if_argument(2, kind, _refuse(errno.EPROTONOSUPPORT)) for kind in (MPTCP, SMC_PROTOCOL)),
                     )
                     for family in inet
                 ),
