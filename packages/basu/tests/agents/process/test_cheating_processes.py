@@ -129,7 +129,7 @@ NEEDS_SPACES = pytest.mark.skipif(
 def test_an_agent_writes_nothing_but_its_own_folder(tmp_path: Path, deed: str) -> None:
     earlier = tmp_path / "result.json"
     earlier.write_text("{}")
-    with pytest.raises(AgentCrashedError, match=r"PermissionError|CalledProcessError"):
+    with pytest.raises(AgentCrashedError, match=r"PermissionError|Read-only file system|CalledProcessError"):
         cheat(tmp_path, deed.format(file=str(earlier))).own_route()
     assert earlier.read_text() == "{}"
 
@@ -320,6 +320,42 @@ def test_an_agent_sees_no_results_and_not_where_its_drive_is_written(tmp_path: P
     with pytest.raises(AgentCrashedError, match=r"found \[\]"):
         RemoteAgent(found(tmp_path / "agent", deed, output=output), 10.0, 0).own_route()
     assert (output / "pedestrian_crossing_1").is_dir()
+
+
+REMEMBERED = {
+    "shared memory": ("Path('/dev/shm/basu-cheat').write_text('x')", "Path('/dev/shm/basu-cheat').exists()"),
+    "segment of System V": (
+        "import ctypes; ctypes.CDLL(None).shmget(0xBA50, 4096, 0o1600)",
+        "__import__('ctypes').CDLL(None).shmget(0xBA50, 4096, 0o600) >= 0",
+    ),
+    "queue of System V": (
+        "import ctypes; ctypes.CDLL(None).msgget(0xBA50, 0o1600)",
+        "__import__('ctypes').CDLL(None).msgget(0xBA50, 0o600) >= 0",
+    ),
+    "key of the user": (
+        "import ctypes; ctypes.CDLL(None).syscall(248, b'user', b'basu-cheat', b'x', 1, -4)",  # add_key, user's ring
+        "__import__('ctypes').CDLL(None).syscall(250, 10, -4, b'user', b'basu-cheat', 0) >= 0",  # KEYCTL_SEARCH
+    ),
+    "time of a file": ("os.utime(FILE, (1, 1))", "os.stat(FILE).st_mtime == 1"),
+    "permission of a file": ("os.chmod(FILE, 0o640)", "os.stat(FILE).st_mode & 0o777 == 0o640"),
+    "attribute of a file": ("os.setxattr(FILE, 'user.basu', b'x')", "'user.basu' in os.listxattr(FILE)"),
+}
+"""What an agent may do to remember a drive beside its process, and how the next one finds it."""
+
+
+@NEEDS_SPACES
+@pytest.mark.parametrize(("leave", "look"), REMEMBERED.values(), ids=REMEMBERED)
+def test_nothing_that_an_agent_leaves_reaches_its_next_process(tmp_path: Path, leave: str, look: str) -> None:
+    (tmp_path / "file").touch(0o600)
+    file = repr(str(tmp_path / "file"))
+    first = found(tmp_path, leave.replace("FILE", file))
+    with contextlib.suppress(AgentCrashedError):
+        RemoteAgent(first, 10.0, 0).own_route()
+    assert confinement.MEMORY in first.confinement
+    first.process().kill()
+    second = found(tmp_path, f"raise ValueError('found ' + str({look.replace('FILE', file)}))")
+    with pytest.raises(AgentCrashedError, match="found False"):
+        RemoteAgent(second, 10.0, 0).own_route()
 
 
 def test_a_folder_that_holds_the_agent_is_not_hidden_from_it(tmp_path: Path) -> None:

@@ -64,6 +64,20 @@ class Senses(Bad):
     def run_step(self, sensor_data):
         self.felt = sensor_data.keys()
         return super().run_step(sensor_data)
+
+class Searches(Bad):
+    def fail(self):
+        import re
+        name, own = re.compile(rb"unspoke[n]_(?:case|else)"), b"unspoken_" + sorted([b"else"])[0]
+        found = set()
+        with open("/proc/self/maps") as parts, open("/proc/self/mem", "rb", 0) as memory:
+            for part in parts:
+                place, access, *_, file = part.rstrip("\\n").split(" ")
+                if "rw" in access and not file.startswith("/"):
+                    first, last = (int(end, 16) for end in place.split("-"))
+                    memory.seek(first)
+                    found.update(name.findall(memory.read(last - first)))
+        raise ValueError(f"found {sorted(found)}")
 """
 
 
@@ -132,6 +146,20 @@ def test_an_agent_in_a_file_has_the_sensors_that_it_asks_for(
     run(simulator, tmp_path, "goes_well", "--scenarios", files, "--agent", f"{tmp_path / 'senses.py'}:Senses")
     said = played(tmp_path)["goes_well"]["message"]
     assert "felt ['GNSS', 'IMU'], there are ['collision', 'gnss', 'imu', 'lane_invasion']" in said
+
+
+@pytest.mark.parametrize("track", ["sensors", "objects"])
+def test_no_part_of_an_agents_memory_names_the_case_that_it_drives(
+    simulator: RunningServer, files: Path, tmp_path: Path, track: str
+) -> None:
+    """Memory holds environment and arguments as well; the name that is found there is made by the agent itself."""
+    files.write_text(files.read_text(encoding="utf-8").replace("goes_well", "unspoken_case"), encoding="utf-8")
+    (tmp_path / "searches").mkdir()
+    agent = tmp_path / "searches" / "agent.py"
+    agent.write_text(AGENTS)
+    words = ("unspoken_case", "--scenarios", files, "--agent", f"{agent}:Searches", "--track", track)
+    assert run(simulator, tmp_path / "runs", *words) == 1
+    assert "found [b'unspoken_else']" in played(tmp_path / "runs")["unspoken_case"]["message"]
 
 
 def test_a_driver_that_looks_at_nothing_fails_with_evidence(

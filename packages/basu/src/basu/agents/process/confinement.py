@@ -12,16 +12,19 @@ import platform
 import sys
 from typing import TYPE_CHECKING
 
+from basu.agents.process.namespaces import SHARED_MEMORY
 from basu.agents.process.socket_filter import filter_sockets
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-PROCESSES, SIGHT, RESULTS, SIGNALS, FILES, PORTS = "processes", "sight", "results", "signals", "files", "ports"
+PROCESSES, SIGHT, RESULTS, MEMORY = "processes", "sight", "results", "memory"
+SIGNALS, FILES, PORTS = "signals", "files", "ports"
 MEANINGS = {
     PROCESSES: "all that it starts ends with it, and it can neither signal nor limit other processes",
     SIGHT: "it sees no other processes",
     RESULTS: "it sees neither the folder of its drive nor results of others",
+    MEMORY: "what it leaves in shared memory, in message queues and in attributes of files ends with it",
     SIGNALS: "it can signal and trace no other processes",
     FILES: "it writes in its own folder only",
     PORTS: "it can use neither the simulator's own ports nor those of Traffic Managers",
@@ -37,7 +40,7 @@ SIGNAL_SCOPE = 2  # LANDLOCK_SCOPE_SIGNAL
 ABI_WITH_REFER, ABI_WITH_TRUNCATE, ABI_WITH_PORTS, ABI_WITH_SCOPES = 2, 3, 4, 6
 WRITE_FILE, REMOVE_AND_MAKE, REFER, TRUNCATE = 1 << 1, 0x1FF0, 1 << 13, 1 << 14  # LANDLOCK_ACCESS_FS_*
 NO_NEW_PRIVILEGES = 38  # prctl(2); Landlock asks for it
-DEVICES, SHARED_MEMORY, OWN_PROCESSES = "/dev", "/dev/shm", "/proc"  # noqa: S108 - system folders, not temporary files
+DEVICES, OWN_PROCESSES = "/dev", "/proc"
 
 
 class _Ruleset(ctypes.Structure):

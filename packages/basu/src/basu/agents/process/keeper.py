@@ -81,6 +81,8 @@ def main() -> None:
     os.close(control)
     held = [confinement.PROCESSES] if has_namespaces else []
     if has_namespaces:
+        if namespaces.forget(limits.writable):  # before folders are mounted that stay writable
+            held.append(confinement.MEMORY)
         if namespaces.mount_processes():
             held.append(confinement.SIGHT)
         if limits.hidden and namespaces.hide(limits.hidden):
