@@ -2,10 +2,13 @@
 
 import subprocess
 import sys
+import time
 from threading import Event
+from types import SimpleNamespace
 
 import pytest
 
+from linden import background
 from linden.background import NotWantedError, OneAtATime, checkpoint, in_background
 
 
@@ -29,6 +32,30 @@ def test_work_that_is_not_wanted_ends_at_its_next_checkpoint() -> None:
         made.result(10)
     assert other.result(10) is None
     checkpoint()  # here nothing is given up
+
+
+def wait_until_returned() -> None:
+    """Wait until no memory is to be returned."""
+    until_s = time.monotonic() + 10
+    while background._returns:
+        assert time.monotonic() < until_s
+        time.sleep(0.01)
+
+
+def test_memory_is_returned_after_the_last_work_and_not_after_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What work made is still held when it ends; memory that was returned at once came back to nobody."""
+    wait_until_returned()  # for the tests before this one
+    returned_s: list[float] = []
+    library = SimpleNamespace(malloc_trim=lambda _: returned_s.append(time.monotonic()))
+    monkeypatch.setattr(background.ctypes, "CDLL", lambda _: library)
+    monkeypatch.setattr(background, "_SETTLED_S", 0.2)
+    for _ in range(20):
+        in_background(lambda: None).result(10)
+        time.sleep(0.02)
+    ended_s = time.monotonic()
+    wait_until_returned()
+    assert returned_s[-1] >= ended_s
+    assert len(returned_s) < 10
 
 
 AT_THE_END = """

@@ -37,8 +37,11 @@ _ending = Event()  # the process ends: no work is wanted any more
 
 _YOUNG = (20_000, 1_000_000_000, 1_000_000_000)
 """Thresholds of Python's garbage collector: it looks at 20,000 values at a time, which takes some 3 ms."""
-_sparing = Lock()
-_spared: list[tuple[int, int, int]] = []  # the thresholds before, once for each block of spared_collector
+_lock = Lock()
+_spared: list[tuple[int, int, int]] = []  # the thresholds before, once for each block of young_collector
+_SETTLED_S = 1.0
+"""How long after the end of work its memory is returned."""
+_returns: list[None] = []  # one for each time that memory is to be returned and was not yet
 
 
 def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) -> "Future[Made]":
@@ -54,10 +57,40 @@ def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) ->
             carry_out(work, made)
         give_memory_back()
 
-    thread = Thread(target=begin, name="background", daemon=True)
+    _start(begin)
+    return made
+
+
+def give_memory_back() -> None:
+    """Return memory that is free to the system, as soon as what was made by work that has just ended is given up.
+
+    That takes the next call or frame, or more, so this happens a second later, in a thread of its own. Only glibc can
+    do it (``malloc_trim``); another C library keeps all of it.
+    """
+    with _lock:
+        _returns.append(None)
+        if len(_returns) > 1:
+            return  # the thread below goes round once more
+    _start(_return_memory)
+
+
+def _return_memory() -> None:
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    while True:
+        asked = len(_returns)
+        if not _ending.wait(_SETTLED_S) and trim is not None:
+            trim(0)
+        with _lock:
+            if len(_returns) == asked or _ending.is_set():
+                _returns.clear()
+                return
+
+
+def _start(work: Callable[[], None]) -> None:
+    """Start a thread that ``end_all`` waits for."""
+    thread = Thread(target=work, name="background", daemon=True)
     _threads.add(thread)
     thread.start()
-    return made
 
 
 @contextmanager
@@ -67,13 +100,13 @@ def young_collector() -> Iterator[None]:
     A large map makes a million values, none of which is garbage. A look at all of them holds Python's lock for 0.3 s,
     and without this there is one whenever they have grown by a quarter.
     """
-    with _sparing:
+    with _lock:
         _spared.append(gc.get_threshold())
         gc.set_threshold(*_YOUNG)
     try:
         yield
     finally:
-        with _sparing:
+        with _lock:
             before = _spared.pop()
             if not _spared:
                 gc.set_threshold(*before)
@@ -126,13 +159,6 @@ class OneAtATime:
     ) -> None:
         """Let the next thread in."""
         self._taken.release()
-
-
-def give_memory_back() -> None:
-    """Return memory that is free to the system, where its C library can (glibc); it keeps all of it otherwise."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:
-        trim(0)
 
 
 def carry_out(work: Callable[[], Made], done: "Future[Made]") -> None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden import CARLA_VERSION
-from linden.background import give_memory_back, in_background
+from linden.background import give_memory_back
 from linden.errors import Refusal
 from linden.maps.library import LoadedMap
 from linden.maps.navigation.library import MeshFile
@@ -84,7 +84,7 @@ def _begin(simulation: World, ready: LoadedMap, reset_settings: bool, layers: in
     simulation.load(ready, reset_settings=reset_settings)
     if before is not ready:
         del before
-        in_background(give_memory_back)
+        give_memory_back()
     if layers != MapLayer.ALL:
         simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
 
