@@ -87,7 +87,7 @@ class AgentPart(TypedDict):
     name: str
     confinement: NotRequired[
         Annotated[
-            list[Literal["processes", "sight", "results", "signals", "files", "ports"]] | None,
+            list[Literal["processes", "sight", "results", "memory", "signals", "files", "ports"]] | None,
             "the parts of the confinement of its process that the kernel enforced; null with --in-process",
         ]
     ]

@@ -1,4 +1,4 @@
-"""The table at the end of a run on the console: scores, metrics, and the scenarios of its route."""
+"""The table at the end of a run on the console: three answers, scores, metrics, and the scenarios of its route."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.display import NAME_WIDTH
 from basu.metrics.registry import built_in
 from basu.metrics.success import not_exercised
+from basu.output.report.in_words import answers
 from basu.output.report.scenarios.tally import LOOKS
 from basu.output.report.tracks import NO_GATE, ON_OWN_ROUTE
 
@@ -30,6 +31,7 @@ def table(result: Result) -> str:
     return "\n".join(
         [
             *lines,
+            *(f"{answer.question:<{NAME_WIDTH}}{answer.sentence}" for answer in answers(result)),
             *success_lines(result),
             *score_lines(result),
             *judgement(result),

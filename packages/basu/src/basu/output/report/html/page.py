@@ -18,6 +18,7 @@ from basu.metrics.registry import built_in
 from basu.output.report.events import events
 from basu.output.report.html.evidence import evidence
 from basu.output.report.html.score_card import rows, score_card, table
+from basu.output.report.in_words import answers
 from basu.output.report.plots.signals import charts, signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
@@ -58,6 +59,7 @@ def report(run: RunRecord) -> bytes:
         "status": document["status"],
         "fault": document["fault"],
         "message": document["message"],
+        "answers": answers(result),
         "score_card": score_card(result),
         "history": history is not None,
         "samples": "",
