@@ -158,7 +158,7 @@ def test_fading_has_etsis_deviation_and_its_seed_repeats_it(world: World) -> Non
         assert (fadings(again, seed, others=others) == first) is alike
 
 
-def test_what_a_radio_sends_does_not_depend_on_who_listens(world: World) -> None:
+def test_what_a_radio_sends_does_not_depend_on_listeners(world: World) -> None:
     ear = radio(world, car(world, 0.0))
     radio(world, car(world, 50.0))
     frames = [bool(frame(world, *([ear] if number > 30 else []))) for number in range(80)]
