@@ -171,6 +171,18 @@ def test_texts_go_both_ways(street: Street) -> None:
     assert [each.get()["Message"]["Message"] for event in first.heard() for each in event] == ["understood"]
 
 
+def test_with_a_sensor_tick_an_event_comes_in_each_frame_and_may_be_empty(street: Street) -> None:
+    ear, voice = street.radio(street.car(0.0), sensor_tick="0.05"), street.radio(street.car(15.0))
+    patient = street.radio(None, "v2x_custom", sensor_tick="0.05")
+    street.tick(30)
+    told, silent = ear.heard(), patient.heard()
+    for events in (told, silent):
+        assert [later.frame - earlier.frame for earlier, later in pairwise(events)] == [1] * 29
+    assert {len(event) for event in told} == {0, 1}
+    assert [list(event) for event in silent] == [[]] * 30
+    assert voice.sensor.is_alive
+
+
 def test_a_pole_is_a_road_side_unit(street: Street) -> None:
     ear = street.radio(street.car(0.0))
     pole = street.world.spawn_actor(

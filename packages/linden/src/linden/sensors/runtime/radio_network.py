@@ -74,7 +74,8 @@ class RadioNetwork:
     ) -> list[tuple[ActorRecord, Transform, object]]:
         """Send what is to be sent in this frame; return what is handed over: sensor, its pose, reading.
 
-        Messages are generated without listeners too, so that later messages do not depend on them.
+        Messages are generated without listeners too, so that later messages do not depend on them. A radio with a
+        ``sensor_tick`` hands over at every tick, without messages too, so that a client can wait for it.
         """
         records = [episode.actors.get(actor_id) for actor_id in self._radios]
         stations = [station_of(episode, record) for record in records]
@@ -88,7 +89,9 @@ class RadioNetwork:
         found: list[tuple[ActorRecord, Transform, object]] = []
         for radio, record in zip(self._radios.values(), records, strict=True):
             due, radio.schedule = advance(radio.schedule, episode.elapsed_s)
-            if due and radio.inbox:
+            if record.stream_id not in listened:
+                radio.inbox.clear()
+            elif due and (radio.inbox or radio.schedule.interval_s > 0.0):
                 found.append((record, episode.actors.transform(record.id), radio.hand_over()))
         return found
 

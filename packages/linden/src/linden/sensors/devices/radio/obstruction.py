@@ -40,7 +40,7 @@ class Link(NamedTuple):
     @property
     def distance_m(self) -> float:
         """Between the antennas."""
-        return float(np.linalg.norm(np.subtract(self.receiver.location, self.transmitter.location)))
+        return math.dist(self.receiver.location, self.transmitter.location)
 
 
 def paths(seen: Seen, actors: ActorTable, links: Sequence[Link]) -> list[Path]:
