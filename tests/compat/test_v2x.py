@@ -199,6 +199,25 @@ def test_a_pole_is_a_road_side_unit(street: Street) -> None:
     }
 
 
+def test_a_traffic_light_that_carries_a_radio_does_not_hide_it(street: Street) -> None:
+    light = street.world.get_actors().filter("traffic.traffic_light*")[0]
+    mast = light.get_transform().location
+    stop = light.get_stop_waypoints()[0].transform
+    car = street.world.spawn_actor(
+        street.world.get_blueprint_library().find("vehicle.tesla.model3"),
+        carla.Transform(stop.location + carla.Location(z=0.3), stop.rotation),
+    )
+    street.tick(40)
+    ear, _ = street.radio(car), street.radio(light)
+    street.tick(2)
+    message = ear.heard()[0][0]
+    assert message.get()["Message"]["Header"]["Station ID"] == light.id
+    antenna = car.get_location() + carla.Location(z=car.bounding_box.location.z + car.bounding_box.extent.z + 0.02)
+    distance_m = antenna.distance(mast + carla.Location(z=2.0))
+    expected = 21.5 + 10.0 - (32.4 + 20.0 * math.log10(distance_m) + 20.0 * math.log10(5.9))
+    assert message.power == pytest.approx(expected, abs=0.05)
+
+
 @pytest.mark.parametrize(
     ("attributes", "sentence"),
     [

@@ -247,6 +247,23 @@ def test_the_roadside_has_stations_too(world: World) -> None:
     assert of_pole.power_dbm == of_car.power_dbm
 
 
+def test_a_walker_is_a_station_with_its_antenna_above_the_head(world: World) -> None:
+    mine = car(world, 0.0)
+    ear, walker = (
+        radio(world, mine),
+        world.spawn(described("walker.pedestrian.0001"), Transform(Vector3D(30.0, 0.0, 1.0))),
+    )
+    radio(world, walker)
+    (heard,) = frame(world, ear)[ear.id]
+    pose = world.episode.transform(walker.id).location
+    roof_m = mine.box.location.z + mine.box.extent.z
+    distance_m = math.hypot(pose.x, pose.y, pose.z + walker.box.extent.z - roof_m)
+    assert heard.power_dbm == pytest.approx(winner_dbm(distance_m), abs=0.02)
+    assert heard.message.station_type is StationType.PEDESTRIAN
+    assert heard.message.state is not None
+    assert heard.message.facts == (VehicleRole.DEFAULT, 0)
+
+
 def test_texts_reach_radios_for_texts_in_the_next_frame_and_no_others(world: World) -> None:
     mine, other = car(world, 0.0), car(world, 50.0)
     first, second, cam = radio(world, mine, CUSTOM), radio(world, other, CUSTOM), radio(world, other, fixed_rate="true")
