@@ -21,8 +21,8 @@ from basu.routing import Route, RouteControl, Stop
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "agent-api.md"
 CALLED_BY_BASU = ("config", "sensors", "get_initial_route_locations", "setup", "run_step", "destroy")
-FOR_THE_AGENT = ("visible_actors",)
-INTERNAL = ("bind",)
+FOR_THE_AGENT = ("visible_actors", "send")
+INTERNAL = ("bind", "bind_sensors")
 
 
 def main() -> int:

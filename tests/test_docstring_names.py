@@ -14,7 +14,14 @@ FOREIGN = {
     "CARLA": {
         *("CarlaRecorder.cpp", "CarlaRecorderQuery.cpp", "CarlaReplayer.cpp", "CarlaReplayerHelper.cpp"),
         *("CarlaServer.cpp", "Navigation.cpp", "AddTorqueInDegrees", "LoadEpisode", "EVehicleDoor", "bad_weak_ptr"),
-        *("GetMatrix", "carla.RadarDetection", "carla.LightManager", "_parse_vehicle_keys", "Speed_30"),
+        *(
+            "GetMatrix",
+            "carla.RadarDetection",
+            "carla.LightManager",
+            "carla.CustomV2XEvent",
+            "_parse_vehicle_keys",
+            "Speed_30",
+        ),
         "agents.navigation.basic_agent",
     },
     "the leaderboard and ScenarioRunner": {

@@ -218,10 +218,10 @@ def test_another_users_simulator_is_left_as_it_was(run: Runner, tmp_path: Path, 
 
 
 def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, tmp_path: Path) -> None:
-    (tmp_path / "ears.json").write_text('[{"type": "sensor.other.v2x", "id": "EAR"}]')
+    (tmp_path / "ears.json").write_text('[{"type": "sensor.other.rss", "id": "EAR"}]')
     code, result = run(doing(tmp_path, "return None", str(tmp_path / "ears.json")))
     assert (code, result["status"]) == (1, "AgentCrashed")  # an agent that could choose it could choose its cases
-    assert "ears.json: sensor 'EAR' (sensor.other.v2x) cannot be served by this simulator" in result["message"]
+    assert "ears.json: sensor 'EAR' (sensor.other.rss) cannot be served by this simulator" in result["message"]
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import math
 from collections.abc import Container
 
 from linden.blueprints.library import packaged
+from linden.errors import Refusal
 from linden.maps.library import LoadedMap
 from linden.physics.step import advance
 from linden.protocol.values.actors import ActorDescription
@@ -131,8 +132,12 @@ class World:
         if blueprint.has_stream:
             record.stream_id = self._next_stream
             self._next_stream += 1
-        self.sensors.add(record)
-        if record.id in self.sensors.looking:
+        try:
+            self.sensors.add(record)
+        except Refusal:
+            destroy(self.episode, record.id)
+            raise
+        if self.sensors.casts_rays(record.id):
             self.sensor_scene.prepare(self.episode)
         return record
 

@@ -10,6 +10,7 @@ import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.sight import Sight
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
 
     from basu.agents.sight import Other
     from basu.routing import Route
+
+TEXT_RADIO = "sensor.other.v2x_custom"
+LONGEST_TEXT_BYTES = 99
+"""Of a message of CARLA's custom radio: its record has 100 bytes, and the last ends the text."""
 
 
 class AutonomousAgent(ABC):
@@ -59,6 +64,7 @@ class AutonomousAgent(ABC):
     driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
     gives_sensors_late: bool = False  # ``sensors`` is called after ``setup``; for foreign agents
     _sight: Sight | None = None
+    _sensor_ids: Mapping[str, int] = MappingProxyType({})  # actors, by the id in the sensor set
 
     def bind(
         self,
@@ -81,6 +87,10 @@ class AutonomousAgent(ABC):
         self.config_values = config_values
         self.time_step_s = time_step_s
         self.server_address = server_address
+
+    def bind_sensors(self, actor_ids: Mapping[str, int]) -> None:
+        """Set which actors the sensors are, by their ids in the set. BASU calls this; an agent does not override it."""
+        self._sensor_ids = actor_ids
 
     @abstractmethod
     def setup(self) -> None:
@@ -146,6 +156,30 @@ class AutonomousAgent(ABC):
         if self._sight is None:
             self._sight = Sight(self.world, self.vehicle)
         return self._sight.others()
+
+    def send(self, sensor_id: str, text: str) -> None:
+        """Send a text by a radio of the agent's sensor set, a ``sensor.other.v2x_custom``; call it in ``run_step``.
+
+        Other radios of that kind receive it in the next tick, if its power suffices on the way: a
+        ``carla.CustomV2XEvent`` in their ``sensor_data``.
+
+        Args:
+            sensor_id: the id of the radio in the sensor set.
+            text: at most 99 bytes of UTF-8, none of them 0, which is what CARLA's messages hold.
+
+        Raises:
+            ValueError: the set has no such radio, or the text does not fit.
+        """
+        size = len(text.encode())
+        if size > LONGEST_TEXT_BYTES or "\0" in text:
+            raise ValueError(f"a text of {size} bytes cannot be sent: it has at most {LONGEST_TEXT_BYTES}, and no zero")
+        actor = self.world.get_actor(self._sensor_ids.get(sensor_id, 0))
+        if actor is None or actor.type_id != TEXT_RADIO:
+            raise ValueError(
+                f"the sensor set has no {TEXT_RADIO} with the id '{sensor_id}', so nothing can be sent by it"
+            )
+        actor.send(text)
+        self.world.get_weather()  # answered after the text has arrived, which the client does not wait for by itself
 
     def destroy(self) -> None:  # noqa: B027 - most agents have nothing to put away
         """Release what ``setup`` opened: files, windows, processes. BASU calls this once, however the run ends."""

@@ -189,8 +189,14 @@ class AgentCalls:
 
     def hear(self, sensors: Iterable[SpawnedSensor]) -> bool:
         """Note which measurements the agent wants as arrays; False: this does not listen to sensors itself."""
+        sensors = tuple(sensors)
         self._as_numpy = frozenset(sensor.id for sensor in sensors if sensor.as_numpy)
+        self.name_sensors(sensors)
         return False
+
+    def name_sensors(self, sensors: Iterable[SpawnedSensor]) -> None:
+        """Tell the agent which actors its sensors are."""
+        self.agent.bind_sensors({sensor.id: sensor.actor_id for sensor in sensors})
 
     def stop_hearing(self) -> None:
         """Nothing to stop."""

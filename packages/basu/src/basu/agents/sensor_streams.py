@@ -55,6 +55,9 @@ ON_EVENT = frozenset(
     }
 )
 
+# With a ``sensor_tick``, a radio of ``linden serve`` speaks every tick; CARLA's radios speak when they hear.
+RADIOS = frozenset({"sensor.other.v2x", "sensor.other.v2x_custom"})
+
 
 class SpawnedSensor(NamedTuple):
     """A sensor of the agent's set that is in the world."""

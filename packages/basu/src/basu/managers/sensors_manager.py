@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.sensor_file import SensorSpec, check_sensors
-from basu.agents.sensor_streams import ON_EVENT, SensorSilentError, SensorStreams, SpawnedSensor
+from basu.agents.sensor_streams import ON_EVENT, RADIOS, SensorSilentError, SensorStreams, SpawnedSensor
 from basu.errors import AgentCrashedError, BasuError, SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
 
@@ -81,7 +81,7 @@ class SensorsManager(BaseManager):
             raise self._refusal(str(error)) from error
         self._timeout_s = run.timeout_s
         self._streams = SensorStreams(run.timeout_s)
-        sensors = [self._spawned(spec, _blueprint(library, spec, run.seed), run) for spec in self._specs]
+        sensors = [self._spawned(spec, _blueprint(library, spec, run), run) for spec in self._specs]
         elsewhere = self._listener is not None and self._listener.hear(sensors)
         if elsewhere and not self._is_watched:
             return
@@ -124,8 +124,8 @@ class SensorsManager(BaseManager):
         with self._serving(spec):
             actor = run.world.spawn_actor(blueprint, pose, attach_to=run.vehicle)
         self._actors.append(actor)
-        tick_s = float(dict(spec.attributes).get("sensor_tick", "0"))
-        period_ticks = 0 if spec.type_id in ON_EVENT else max(1, round(tick_s / run.step_s))
+        is_awaited = spec.type_id not in ON_EVENT or _speaks_every_tick(spec, run)
+        period_ticks = max(1, round(_tick_s(spec) / run.step_s)) if is_awaited else 0
         return SpawnedSensor(spec.id, actor.id, period_ticks, spec.as_numpy)
 
     @contextlib.contextmanager
@@ -143,11 +143,23 @@ class SensorsManager(BaseManager):
             ) from error
 
 
-def _blueprint(library: carla.BlueprintLibrary, spec: SensorSpec, seed: int) -> carla.ActorBlueprint:
+def _tick_s(spec: SensorSpec) -> float:
+    """The time between two measurements that a sensor set asks for; 0 means every tick."""
+    return float(dict(spec.attributes).get("sensor_tick", "0"))
+
+
+def _speaks_every_tick(spec: SensorSpec, run: Run) -> bool:
+    """Whether a sensor is a radio of our own simulator: it hands over in every tick, if need be nothing."""
+    return run.own_simulator and spec.type_id in RADIOS
+
+
+def _blueprint(library: carla.BlueprintLibrary, spec: SensorSpec, run: Run) -> carla.ActorBlueprint:
     """The blueprint of a sensor with all its attributes."""
     blueprint = library.find(spec.type_id)
     if blueprint.has_attribute("noise_seed"):
-        blueprint.set_attribute("noise_seed", str(seed))
+        blueprint.set_attribute("noise_seed", str(run.seed))
     for name, value in spec.attributes:
         blueprint.set_attribute(name, value)
+    if _speaks_every_tick(spec, run) and _tick_s(spec) == 0.0:
+        blueprint.set_attribute("sensor_tick", str(run.step_s))
     return blueprint

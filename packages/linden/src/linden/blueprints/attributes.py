@@ -97,6 +97,15 @@ BOUNDS = {
     "hit_radius": AttributeBounds(0.0, 1e3),
     "positive_threshold": AttributeBounds(0.01, 1e6),  # an event for every step of brightness: a smaller one never ends
     "negative_threshold": AttributeBounds(0.01, 1e6),
+    "transmit_power": AttributeBounds(-200.0, 200.0),  # dBm, as the sensitivity; a radio for cars has 23 to 33
+    "receiver_sensitivity": AttributeBounds(-1e3, 200.0),
+    "frequency_ghz": AttributeBounds(0.001, 1e3),
+    "combined_antenna_gain": AttributeBounds(-200.0, 200.0),
+    "path_loss_exponent": AttributeBounds(0.0, 100.0),
+    "d_ref": AttributeBounds(0.001, 1e6),
+    "filter_distance": AttributeBounds(0.0, 1e6),
+    "gen_cam_min": AttributeBounds(0.001, 1e6),
+    "gen_cam_max": AttributeBounds(0.001, 1e6),
     "scale": AttributeBounds(0.0, 1e3),
     "mass": AttributeBounds(0.0, 1e7),
     "extent_x": AttributeBounds(0.0, 1e6),

@@ -21,6 +21,7 @@ from linden.protocol.wire.measurements import (
     radar_payload,
     sensor_header,
 )
+from linden.protocol.wire.v2x import cam_payload, text_payload
 from linden.sensors.camera.cameras import Image
 from linden.sensors.camera.events import Events
 from linden.sensors.devices.collision import SCENERY, Collision
@@ -28,6 +29,7 @@ from linden.sensors.devices.imu import ImuMeasurement
 from linden.sensors.devices.lidar import SemanticSweep, Sweep
 from linden.sensors.devices.obstacle import Obstacle
 from linden.sensors.devices.radar import Detections
+from linden.sensors.devices.radio.radio import CamReading, TextReading
 from linden.sensors.runtime.measure import Measurement
 from linden.simulation.actor_table import ActorRecord
 from linden.world import World
@@ -76,6 +78,14 @@ def _obstacle(simulation: World, measurement: Measurement, reading: Obstacle) ->
     return SensorType.OBSTACLE, (msgpack.packb((described(measurement.sensor), other, reading.distance_m)),)
 
 
+def _cams(_simulation: World, _measurement: Measurement, reading: CamReading) -> tuple[SensorType, Parts]:
+    return SensorType.V2X, cam_payload(reading.received)
+
+
+def _texts(_simulation: World, _measurement: Measurement, reading: TextReading) -> tuple[SensorType, Parts]:
+    return SensorType.V2X_CUSTOM, text_payload(reading.received)
+
+
 def described(record: ActorRecord) -> Actor:
     """Return an actor that takes part in an event as the client learns of it."""
     return Actor(record.id, record.parent_id, record.description, record.box, record.semantic_tags)
@@ -93,6 +103,8 @@ ENCODERS: dict[type, Encode] = {
     Events: events,
     Detections: _radar,
     Obstacle: _obstacle,
+    CamReading: _cams,
+    TextReading: _texts,
 }
 
 

@@ -9,7 +9,7 @@ from linden.errors import Refusal
 from linden.protocol.values.episode import EpisodeSettings, OpendriveGenerationParameters
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.protocol.wire.stream import StreamTable, token_bytes
-from linden.server.rpc import session
+from linden.server.rpc import sensors, session
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import Long
 from linden.server.rpc.warning_log import KINDS
@@ -52,7 +52,7 @@ def test_a_spawn_point_that_looks_west_has_the_yaw_that_its_actor_will_have(
 
 def test_tokens_name_the_real_streaming_port(context: Context) -> None:
     assert session.get_episode_info(context).token.data == token_bytes(1, 2001)
-    assert session.get_sensor_token(context, 7).data == token_bytes(7, 2001)
+    assert sensors.get_sensor_token(context, 7).data == token_bytes(7, 2001)
 
 
 def carry_out(steps: Long[None]) -> None:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from basu.agents.builtin.driving.driver import DrivingCommand
     from basu.agents.builtin.perception import VehicleFacts
+    from basu.agents.sight import Other
     from basu.routing import Route
 
 PARTNER_OF_CONTROL = {
@@ -59,7 +60,6 @@ class BasicAgent(AutonomousAgent):
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
         """Look, decide, act."""
-        del sensor_data
         snapshot = self.world.get_snapshot()
         own = snapshot.find(self.vehicle.id)
         if own is None:
@@ -67,8 +67,13 @@ class BasicAgent(AutonomousAgent):
         if self.driver is None or self.facts is None:
             self.driver, self.facts = self._get_in(own.get_transform())
         ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
-        command = self.driver.step(ego, self._sees.others(snapshot), self._lights.shows)
+        command = self.driver.step(ego, self.others(snapshot, sensor_data), self._lights.shows)
         return _control(command, self.facts, ego.speed_mps)
+
+    def others(self, snapshot: carla.WorldSnapshot, sensor_data: Mapping[str, tuple[int, Any]]) -> list[Other]:
+        """Return the actors in sight, by which the driver decides; an agent with radios may add some."""
+        del sensor_data
+        return self._sees.others(snapshot)
 
     def config(self) -> dict[str, str]:
         """The shuttle on its round."""

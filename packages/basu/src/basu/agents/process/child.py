@@ -156,6 +156,7 @@ class Child:
 
     def hear(self, sensors: Sequence[SpawnedSensor]) -> None:
         """Listen to the agent's sensors."""
+        self._agent.name_sensors(sensors)
         for sensor in sensors:
             actor = self._world.get_actor(sensor.actor_id)
             try:

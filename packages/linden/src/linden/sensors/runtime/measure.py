@@ -8,6 +8,7 @@ from linden.errors import Refusal
 from linden.protocol.values.space import Transform, Vector3D
 from linden.sensors.devices.collision import collisions
 from linden.sensors.devices.instruments import Instrument, Moment, instrument, observe
+from linden.sensors.devices.radio.radio import RADIOS
 from linden.sensors.runtime.looking_sensors import (
     MAKERS,
     ScheduledSensor,
@@ -15,6 +16,7 @@ from linden.sensors.runtime.looking_sensors import (
     look_around,
     scheduled_sensor_of,
 )
+from linden.sensors.runtime.radio_network import RadioNetwork
 from linden.simulation.actor_table import ActorRecord, ActorTable
 from linden.simulation.episode import Episode
 
@@ -38,7 +40,6 @@ MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", 
 
 NOT_YET = {
     "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
-    "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
     "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
 }
 """Blueprints without a sensor behind them, by the beginning of their ids, and the reason."""
@@ -50,7 +51,7 @@ def refuse_idle(blueprint_id: str) -> None:
     Raises:
         Refusal: CARLA has it, this server not yet.
     """
-    if blueprint_id in MEASURING or blueprint_id in MAKERS:
+    if blueprint_id in MEASURING or blueprint_id in MAKERS or blueprint_id in RADIOS:
         return
     for beginning, instead in NOT_YET.items():
         if blueprint_id.startswith(beginning):
@@ -65,34 +66,47 @@ class EpisodeSensors:
     Attributes:
         instruments: GNSS receivers and inertial units.
         looking: sensors that cast rays.
+        radios: sensors that send messages to each other, along rays.
     """
 
     def __init__(self) -> None:
         self.instruments: dict[int, Instrument] = {}
         self.looking: dict[int, ScheduledSensor] = {}
+        self.radios = RadioNetwork()
 
     def add(self, record: ActorRecord) -> None:
-        """Make the sensor of an actor that was spawned, if the actor is a sensor that measures here."""
+        """Make the sensor of an actor that was spawned, if the actor is a sensor that measures here.
+
+        Raises:
+            Refusal: no sensor can have these attributes together.
+        """
         self.remove(record.id)  # an id can be that of an actor that a replay has destroyed
         if (made := instrument(record.description)) is not None:
             self.instruments[record.id] = made
         if (sensor := scheduled_sensor_of(record.description)) is not None:
             self.looking[record.id] = sensor
+        self.radios.add(record)
 
     def remove(self, actor_id: int) -> None:
         """Drop the sensor of an actor that is destroyed."""
         self.instruments.pop(actor_id, None)
         self.looking.pop(actor_id, None)
+        self.radios.remove(actor_id)
 
     def remove_destroyed(self, actors: ActorTable) -> None:
         """Drop the sensors of destroyed actors."""
-        for actor_id in [*self.instruments, *self.looking]:
+        for actor_id in [*self.instruments, *self.looking, *self.radios]:
             if actor_id not in actors:
                 self.remove(actor_id)
 
+    def casts_rays(self, actor_id: int) -> bool:
+        """Return whether an actor is a sensor that needs the scene."""
+        return actor_id in self.looking or actor_id in self.radios
+
     def any_looking(self, actors: ActorTable, listened: Container[int]) -> bool:
         """Return whether a client subscribes to a sensor that casts rays; ``listened`` are stream ids."""
-        return any(actors.get(actor_id).stream_id in listened for actor_id in self.looking if actor_id in actors)
+        casting = (actor_id for actor_id in (*self.looking, *self.radios) if actor_id in actors)
+        return any(actors.get(actor_id).stream_id in listened for actor_id in casting)
 
 
 def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int], now: SensorFrame) -> Measurements:
@@ -116,6 +130,7 @@ def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int],
         found += _collisions(episode, listened)
     if sensors.looking:
         found += [Measurement(*seen) for seen in look_around(sensors.looking, episode, now, listened)]
+    found += [Measurement(*handed) for handed in sensors.radios.exchange(episode, now, listened)]
     return found
 
 

@@ -17,7 +17,7 @@ from linden.maps.navigation.library import MeshFile
 from linden.protocol.values.enums import MapLayer
 from linden.protocol.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
 from linden.protocol.values.space import Transform
-from linden.protocol.wire.decode import U16, U32
+from linden.protocol.wire.decode import U16
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Token
 from linden.server.frame_clock import LONGEST_STEP_S
 from linden.server.rpc.context import Context, PendingLoad
@@ -124,12 +124,6 @@ def get_map_data(context: Context) -> str:
 def get_episode_info(context: Context) -> EpisodeInfo:
     """Return the episode's id and the token of the world snapshots."""
     return EpisodeInfo(context.world.episode_id, context.streams.token(WORLD_OBSERVER_ID))
-
-
-@method("get_sensor_token")
-def get_sensor_token(context: Context, stream_id: U32) -> Token:
-    """Return where to subscribe to a stream."""
-    return context.streams.token(stream_id)
 
 
 @method("get_episode_settings")

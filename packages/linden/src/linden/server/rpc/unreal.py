@@ -7,7 +7,7 @@ from linden.errors import Refusal
 from linden.protocol.wire.decode import U32, U64
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import method
-from linden.simulation.actor_table import ActorRefusal
+from linden.server.rpc.sensors import check_sensor
 
 _NO_GBUFFERS = (
     "g-buffers are textures inside Unreal's renderer, and this server has none; depth, normals and semantic tags come "
@@ -18,14 +18,14 @@ _NO_GBUFFERS = (
 @method("get_gbuffer_token")
 def get_gbuffer_token(context: Context, actor_id: U32, _buffer: U32) -> bytes:
     """Refuse: g-buffers are textures inside Unreal's renderer."""
-    _check_sensor(context, actor_id)
+    check_sensor(context, actor_id)
     raise Refusal(_NO_GBUFFERS)
 
 
 @method("enable_gbuffers")
 def enable_gbuffers(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Refuse to switch g-buffers on; off they are."""
-    _check_sensor(context, actor_id)
+    check_sensor(context, actor_id)
     if enabled:
         raise Refusal(_NO_GBUFFERS)
 
@@ -33,7 +33,7 @@ def enable_gbuffers(context: Context, actor_id: U32, enabled: bool) -> None:  # 
 @method("are_gbuffers_enabled")
 def are_gbuffers_enabled(context: Context, actor_id: U32) -> bool:
     """Whether a sensor sends g-buffers: never."""
-    _check_sensor(context, actor_id)
+    check_sensor(context, actor_id)
     return False
 
 
@@ -55,40 +55,6 @@ def disable_sensor_for_ros(_context: Context, _stream_id: U32) -> None:
 def is_sensor_enabled_for_ros(_context: Context, _stream_id: U32) -> bool:
     """Whether a sensor publishes to ROS 2 by itself: never."""
     return False
-
-
-@method("send")
-def send(context: Context, actor_id: U32, _text: str) -> None:
-    """Refuse to send a message by radio: no actor is a radio."""
-    _check_sensor(context, actor_id)
-    raise Refusal(
-        f"actor {actor_id} cannot send: only sensor.other.v2x_custom does, and it needs a model of the radio channel, "
-        f"which this version has not"
-    )
-
-
-@method("set_ignored_vehicles")
-def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]) -> None:
-    """Check which vehicles a sensor shall not show; in 0.9.16 the cosmos camera alone asks, and it is not here."""
-    _check_sensor(context, actor_id)
-    for vehicle_id in vehicle_ids:
-        if "vehicle" not in context.world.episode.actors.get(vehicle_id).description.id:
-            raise ActorRefusal("Actor does not match the expected type", vehicle_id)
-    if vehicle_ids:
-        context.warn_once(
-            "set_ignored_vehicles: as in CARLA 0.9.16, only sensor.camera.cosmos_visualization would leave vehicles "
-            "out; the sensors here go on seeing them"
-        )
-
-
-def _check_sensor(context: Context, actor_id: int) -> None:
-    """Refuse actors that are no sensors.
-
-    Raises:
-        ActorRefusal: there is no such actor, or it is no sensor.
-    """
-    if not context.world.episode.actors.get(actor_id).description.id.startswith("sensor."):
-        raise ActorRefusal("Actor does not match the expected type", actor_id)
 
 
 @method("enable_carsim")

@@ -1,0 +1,44 @@
+"""Sensors: streams, texts that they send, vehicles that they leave out. Source of names: LibCarla 0.9.16."""
+
+from linden.protocol.wire.decode import U32
+from linden.protocol.wire.stream import Token
+from linden.server.rpc.context import Context
+from linden.server.rpc.registry import method
+from linden.simulation.actor_table import ActorRefusal
+
+
+@method("get_sensor_token")
+def get_sensor_token(context: Context, stream_id: U32) -> Token:
+    """Return where to subscribe to a stream."""
+    return context.streams.token(stream_id)
+
+
+@method("send")
+def send(context: Context, actor_id: U32, text: str) -> None:
+    """Let a ``sensor.other.v2x_custom`` send a text in the next frame."""
+    check_sensor(context, actor_id)
+    context.world.sensors.radios.say(actor_id, text)
+
+
+@method("set_ignored_vehicles")
+def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]) -> None:
+    """Check which vehicles a sensor shall not show; in 0.9.16 the cosmos camera alone asks, and it is not here."""
+    check_sensor(context, actor_id)
+    for vehicle_id in vehicle_ids:
+        if "vehicle" not in context.world.episode.actors.get(vehicle_id).description.id:
+            raise ActorRefusal("Actor does not match the expected type", vehicle_id)
+    if vehicle_ids:
+        context.warn_once(
+            "set_ignored_vehicles: as in CARLA 0.9.16, only sensor.camera.cosmos_visualization would leave vehicles "
+            "out; the sensors here go on seeing them"
+        )
+
+
+def check_sensor(context: Context, actor_id: int) -> None:
+    """Refuse actors that are no sensors.
+
+    Raises:
+        ActorRefusal: there is no such actor, or it is no sensor.
+    """
+    if not context.world.episode.actors.get(actor_id).description.id.startswith("sensor."):
+        raise ActorRefusal("Actor does not match the expected type", actor_id)
