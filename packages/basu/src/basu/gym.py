@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.conditions import STEP_S, SimulatorSpec, Traffic
-from basu.episode import Episode, EpisodeSpec, Towns, case_spec
+from basu.episode import Answer, Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.episode import Step
     from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
     from basu.simulator import Simulator
@@ -131,8 +130,9 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         """
         super().reset(seed=seed)
         drawn = seed if seed is not None else int(self.np_random.integers(2**31))
-        seen = self.episode.reset(drawn)
-        self._preview = Preview(self.episode)
+        self.episode.reset(drawn)
+        seen = self.episode.vehicle.observation
+        self._preview = Preview(self.episode.vehicle)
         self._driven_m, self._infractions = seen.driven_m, 0
         return self._preview.of(seen), {"route_s_m": seen.progress.s_m, "infractions": ()}
 
@@ -145,18 +145,19 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             UserError: the action has a wrong shape, or a value that is no number in -1..1.
             SimulatorError: the simulator failed.
         """
-        control = control_from(action)
-        done = self.episode.step(control)
-        if done.outcome is None and done.ending is not None:  # the vehicle has arrived: its last frame is recorded
-            done = self.episode.step(control)
-        return self._answer(done)
+        answer, vehicle = Answer(control_from(action)), self.episode.vehicle
+        self.episode.step([answer])
+        if vehicle.outcome is None and vehicle.ending is not None:  # it has arrived: its last frame is recorded
+            self.episode.step([answer])
+        return self._answer()
 
-    def _answer(self, done: Step) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
+    def _answer(self) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
         """Observation, reward, terminated, truncated, info."""
-        seen, outcome = done.observation, done.outcome
+        vehicle = self.episode.vehicle
+        seen, outcome = vehicle.observation, vehicle.outcome
         new: tuple[Evidence, ...] = ()
         if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
-            found = self.episode.metrics.infractions_so_far()
+            found = vehicle.metrics.infractions_so_far()
             new, self._infractions = found[self._infractions :], len(found)
         parts = self._parts(seen.driven_m - self._driven_m, len(new), outcome)
         self._driven_m = seen.driven_m
@@ -169,7 +170,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
 
     def _success(self, outcome: Outcome, found: Sequence[Evidence]) -> dict[str, Any]:
         """Return whether the episode passed, by the rule of all runs, with the reasons."""
-        history, playing = self.episode.metrics.history(), self.episode.playing
+        history, playing = self.episode.vehicle.metrics.history(), self.episode.playing
         if self._spec.is_case:
             judged = playing[0].judged(history, outcome)
             said = success_of_verdict(judged.verdict.value, judged.message)
