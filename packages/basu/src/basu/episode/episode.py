@@ -376,6 +376,11 @@ class Episode:
         return self.vehicles[0]
 
     @property
+    def is_case(self) -> bool:
+        """Whether the episode begins and ends with one scenario."""
+        return self._spec.is_case
+
+    @property
     def playing(self) -> Sequence[Playing]:
         """The scenarios of the drive."""
         return () if self.ground is None else self.ground.scenarios.playing
