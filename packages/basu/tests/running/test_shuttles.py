@@ -11,7 +11,7 @@ from basu.cli import main
 from basu.errors import UserError
 from basu.files import read_json
 from basu.options.run import RunOptions
-from basu.output.report.shuttles import links
+from basu.output.report.shuttles import links, read_shuttles
 from basu.records.history.files import read_history
 from basu.results import RunResult, load
 from servers import RunningServer
@@ -223,6 +223,13 @@ def test_each_report_links_to_the_others() -> None:
         "../shuttle_3/report.html",
     ]
     assert links(None) == []
+
+
+def test_a_document_that_was_changed_gets_a_sentence(tmp_path: Path) -> None:
+    assert read_shuttles(tmp_path) is None
+    (tmp_path / "shuttles.json").write_text('{"schema_version": 1, "shuttles": []}', encoding="utf-8")
+    with pytest.raises(UserError, match=r"shuttles\.json: the document lacks 'contacts'"):
+        read_shuttles(tmp_path)
 
 
 @pytest.mark.pictures

@@ -28,8 +28,9 @@ from basu.routing.planned_route import beginning_at
 from basu.simulator import linden_command
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.conditions import Sumo
     from basu.episode.spec import EpisodeSpec
     from basu.episode.vehicle_under_test import Answer
@@ -54,6 +55,16 @@ class Ground(NamedTuple):
     description: RouteDescription
     route: Route
     scenarios: ScenarioManager
+
+
+class _Placed(NamedTuple):
+    """A vehicle that stands at the start of its route."""
+
+    driver: Driver
+    config: AgentConfig
+    route: Route
+    actor: carla.Vehicle
+    remove: Callable[[], None]
 
 
 class Episode:
@@ -133,7 +144,7 @@ class Episode:
         self._laid = False
         spec, world = self._spec, ground.world
         routes = [beginning_at(ground.route, driver.start_m) for driver in self._drivers]
-        placed = []
+        placed: list[_Placed] = []
         try:
             with asking("getting the vehicle ready"):
                 self._resources.enter_context(ticked_by_us(world, spec.step_s))
@@ -144,7 +155,7 @@ class Episode:
                     self._resources.callback(stack.close)
                     config = driver.config or spec.config
                     actor = stack.enter_context(spawned_at_start(world, route, config.vehicle, driver.role))
-                    placed.append((driver, config, route, actor, stack))
+                    placed.append(_Placed(driver, config, route, actor, stack.close))
                 settle(world)
                 world.set_weather(spec.weather)
                 if not spec.is_case:
@@ -154,32 +165,32 @@ class Episode:
             raise
         below = self._folder if folder is None else folder
         self.vehicles = tuple(
-            VehicleUnderTest(
-                driver,
-                Run(
-                    client=self._simulator.client,
-                    world=world,
-                    carla_map=ground.town.carla_map,
-                    vehicle=actor,
-                    route=route,
-                    config=config,
-                    step_s=spec.step_s,
-                    seed=seed_of(seed, number),
-                    timeout_s=spec.timeout_s,
-                    folder=below / driver.folder,
-                    server_address=self._simulator.address,
-                    own_simulator=self._simulator.own,
-                    gates=self._simulator.gates,
-                    weather=spec.weather_along if number == 1 else (),
-                    neighbours=Neighbours(world, actor.id),
-                    changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
-                ),
-                spec,
-                stack.close,
-            )
-            for number, (driver, config, route, actor, stack) in enumerate(placed, 1)
+            VehicleUnderTest(each.driver, self._run(ground, each, number, seed, below), spec, each.remove)
+            for number, each in enumerate(placed, 1)
         )
         self._prepared = True
+
+    def _run(self, ground: Ground, placed: _Placed, number: int, seed: int, folder: Path) -> Run:
+        """Return the data of a vehicle's drive; ``number`` counts from 1, ``seed`` and ``folder`` are the run's."""
+        spec = self._spec
+        return Run(
+            client=self._simulator.client,
+            world=ground.world,
+            carla_map=ground.town.carla_map,
+            vehicle=placed.actor,
+            route=placed.route,
+            config=placed.config,
+            step_s=spec.step_s,
+            seed=seed_of(seed, number),
+            timeout_s=spec.timeout_s,
+            folder=folder / placed.driver.folder,
+            server_address=self._simulator.address,
+            own_simulator=self._simulator.own,
+            gates=self._simulator.gates,
+            weather=spec.weather_along if number == 1 else (),
+            neighbours=Neighbours(ground.world, placed.actor.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
+        )
 
     def reset(self, seed: int | None = None) -> None:
         """Begin a drive with its first frame; the drive before is closed.

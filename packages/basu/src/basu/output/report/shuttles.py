@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.files import read_json
+from basu.output.report.documents import read_document
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-SHUTTLES_FILE = "shuttles.json"
+SHUTTLES_FILE, SHUTTLES_SCHEMA = "shuttles.json", "shuttles.schema.json"
 SHUTTLES_SCHEMA_VERSION = 1
 
 
@@ -18,13 +18,12 @@ def read_shuttles(folder: Path) -> dict[str, Any] | None:
     """Return the document of a run with several vehicles; None for a run with one.
 
     Raises:
-        UserError: it cannot be read.
+        UserError: it cannot be read, or is not as its schema says.
     """
     path = folder / SHUTTLES_FILE
     if not path.exists():
         return None
-    document: dict[str, Any] = read_json(path, "the document of the shuttles", "drive the run again")
-    return document
+    return read_document(path, SHUTTLES_SCHEMA)
 
 
 def folder_of(number: int) -> str:
