@@ -19,7 +19,7 @@ from pathlib import Path
 import carla
 import numpy as np
 
-from basu.agents.process.gate import Gate, Relay
+from basu.agents.process.gate import Gate, Gates, Relay
 from basu.simulator import OwnServer, connect, linden_command
 
 TIMEOUT_S, WARM_UP_TICKS, NAP_S = 20.0, 40, 0.00005
@@ -39,7 +39,7 @@ def main() -> None:
     try:
         clients = {server: connect("127.0.0.1", server.port, TIMEOUT_S) for server in (gated, plain)}
         vehicles = {server: spawned(client, 1 + arguments.actors) for server, client in clients.items()}
-        ways = {"no gate": (plain, None), "in the server": (gated, Gate(gated)), "relay": (plain, Gate(relay))}
+        ways = {"no gate": (plain, None), "in the server": (gated, Gates(gated)), "relay": (plain, Gates(relay))}
         rows: dict[tuple[str, str], list[tuple[float, float]]] = {}
         for _ in range(arguments.rounds):
             for name, track in [("no gate", ""), *((name, track) for name in list(ways)[1:] for track in TRACKS)]:
@@ -73,10 +73,11 @@ def spawned(client: carla.Client, count: int) -> list[carla.Actor]:
 
 @contextmanager
 def agent_of(
-    client: carla.Client, gate: Gate | None, track: str, vehicles: list[carla.Actor], port: int
+    client: carla.Client, gates: Gates | None, track: str, vehicles: list[carla.Actor], port: int
 ) -> Iterator[tuple[carla.World, Gate | None]]:
     """Connect an agent's client through a gate, or directly where there is none."""
-    address = ("127.0.0.1", port) if gate is None else gate.open(track, vehicles[0].id, [])
+    gate = None if gates is None else gates.open(track, vehicles[0].id, [])
+    address = ("127.0.0.1", port) if gate is None else gate.address
     frame = client.get_world().tick()
     if gate is not None and track == "objects":
         gate.see(frame, [vehicle.id for vehicle in vehicles[:10]])
@@ -87,9 +88,9 @@ def agent_of(
         gate.close()
 
 
-def answered(gate: Gate, vehicles: list[carla.Actor], count: int) -> list[tuple[float, float]]:
+def answered(gates: Gates, vehicles: list[carla.Actor], count: int) -> list[tuple[float, float]]:
     """Return the wall times of orders to a gate with their answers; their processor time is left out."""
-    gate.open("world", vehicles[0].id, [])
+    gate = gates.open("world", vehicles[0].id, [])
     times_s = []
     for _ in range(count):
         began_s = time.perf_counter()

@@ -90,7 +90,7 @@ def single(steps: int, vehicles: int) -> tuple[list[tuple[str, Rate]], float, fl
             resets.append(time.perf_counter() - began_s)
         follower = Follower(env)
         rows = [("basu/Linden-v0", rate(follower.step, follower.begin, steps))]
-        run = env.episode.run
+        run = env.episode.vehicle.run
         control = carla.VehicleControl(throttle=0.25)
 
         def bare() -> None:

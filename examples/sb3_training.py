@@ -162,7 +162,7 @@ class Policy:
 
 def built_in(env):
     """Return the driver `basic` on the route of an environment, as a function of the observation."""
-    run, agent = env.unwrapped.episode.run, BasicAgent()
+    run, agent = env.unwrapped.episode.vehicle.run, BasicAgent()
     agent.bind(
         client=run.client, world=run.world, map=run.carla_map, vehicle=run.vehicle, route=run.route,
         config_values=agent.config(), time_step_s=run.step_s,

@@ -28,9 +28,13 @@ takes orders, one JSON object a line on stdin, as `linden serve --gates` does:
 
     {"open": {"vehicle": 24, "track": "objects", "known": [3, 4], "agent": 71}}
                                                    {"gate": {"rpc": 40001, "streaming": 40002}}
-    {"sensors": [25, 26]}                          {"gate": {}}
-    {"see": {"frame": 1200, "ids": [31, 32]}}      (no answer)
-    {"close": {}}                                  {"gate": {"refused": {"tick_cue": 1}}}
+    {"sensors": {"vehicle": 24, "ids": [25, 26]}}  {"gate": {}}
+    {"see": {"vehicle": 24, "frame": 1200, "ids": [31, 32]}}
+                                                   (no answer)
+    {"close": {"vehicle": 24}}                     {"gate": {"refused": {"tick_cue": 1}}}
+
+There may be a gate for each of several vehicles at once, each with two ports of its own. A second gate for a vehicle
+closes the first one.
 
 `agent` is the agent's process. On Linux the gate accepts its connections and those of processes that it started.
 It closes others, because an agent could drive the vehicle of another one. Without `agent` all processes may connect.

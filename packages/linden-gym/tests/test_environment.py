@@ -92,7 +92,7 @@ def test_a_world_equals_the_environment_through_the_client(
 def test_road_users_are_observed_as_through_the_client(client_env: ShuttleEnv) -> None:
     envs = WorldsVectorEnv(2)
     client_env.reset(seed=0)
-    run = client_env.episode.run
+    run = client_env.episode.vehicle.run
     library, at = run.world.get_blueprint_library(), run.route.waypoints[20].transform
     at.location.z += 0.3
     others = [("vehicle.tesla.model3", 20), ("walker.pedestrian.0003", 12), ("static.prop.trafficcone01", 8)]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
 STEP_S = 0.05  # simulated time from tick to tick: 20 Hz
+ROLE = "hero"  # of the vehicle under test, as the leaderboard and CARLA's replayer call it
 
 Track = Literal["world", "objects", "sensors"]
 """What an agent learns of other actors; scores of different tracks are never compared."""

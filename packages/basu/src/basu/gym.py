@@ -29,13 +29,10 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.conditions import STEP_S, SimulatorSpec, Traffic
-from basu.episode import Episode, EpisodeSpec, Towns, case_spec
+from basu.episode import Answer, Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
-from basu.managers.scenario_results import results_of
-from basu.metrics.success import success, success_of_verdict
-from basu.outcome import Status
 from basu.routing.route_file import read_routes
 from basu.scenarios.cases import by_id
 from basu.scenarios.route_scenarios import scenarios_on
@@ -44,28 +41,15 @@ from basu.simulator import simulator_for
 try:
     import gymnasium
 
-    from basu.gym_spaces import (
-        FAILED,
-        JUDGED_TICKS,
-        TRUNCATED,
-        Preview,
-        Reward,
-        action_space,
-        control_from,
-        observation_space,
-    )
+    from basu.gym_spaces import Reward, action_space, control_from, observation_space
+    from basu.gym_steps import JudgedSteps
 except ImportError as error:
     raise UserError("basu.gym needs gymnasium; install it with `pip install basu[gym]`") from error
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.episode import Step
-    from basu.metrics.infraction import Evidence
-    from basu.outcome import Outcome
     from basu.simulator import Simulator
 
 
@@ -115,8 +99,6 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
         self._resources.callback(self.episode.close)
         weakref.finalize(self, self._resources.close)  # also where close() is forgotten
-        self._driven_m = 0.0
-        self._infractions = 0
 
     def reset(
         self,
@@ -131,10 +113,9 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         """
         super().reset(seed=seed)
         drawn = seed if seed is not None else int(self.np_random.integers(2**31))
-        seen = self.episode.reset(drawn)
-        self._preview = Preview(self.episode)
-        self._driven_m, self._infractions = seen.driven_m, 0
-        return self._preview.of(seen), {"route_s_m": seen.progress.s_m, "infractions": ()}
+        self.episode.reset(drawn)
+        self._judged = JudgedSteps(self.episode, self.episode.vehicle, self._reward)
+        return self._judged.first()
 
     def step(
         self, action: NDArray[np.float32]
@@ -145,42 +126,11 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             UserError: the action has a wrong shape, or a value that is no number in -1..1.
             SimulatorError: the simulator failed.
         """
-        control = control_from(action)
-        done = self.episode.step(control)
-        if done.outcome is None and done.ending is not None:  # the vehicle has arrived: its last frame is recorded
-            done = self.episode.step(control)
-        return self._answer(done)
-
-    def _answer(self, done: Step) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
-        """Observation, reward, terminated, truncated, info."""
-        seen, outcome = done.observation, done.outcome
-        new: tuple[Evidence, ...] = ()
-        if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
-            found = self.episode.metrics.infractions_so_far()
-            new, self._infractions = found[self._infractions :], len(found)
-        parts = self._parts(seen.driven_m - self._driven_m, len(new), outcome)
-        self._driven_m = seen.driven_m
-        info: dict[str, Any] = {"route_s_m": seen.progress.s_m, "infractions": new, "reward_parts": parts}
-        if outcome is not None:
-            info |= {"outcome": outcome.status.value, "message": outcome.message, **self._success(outcome, found)}
-        truncated = outcome is not None and outcome.status in TRUNCATED
-        terminated = outcome is not None and not truncated
-        return self._preview.of(seen), sum(parts.values()), terminated, truncated, info
-
-    def _success(self, outcome: Outcome, found: Sequence[Evidence]) -> dict[str, Any]:
-        """Return whether the episode passed, by the rule of all runs, with the reasons."""
-        history, playing = self.episode.metrics.history(), self.episode.playing
-        if self._spec.is_case:
-            judged = playing[0].judged(history, outcome)
-            said = success_of_verdict(judged.verdict.value, judged.message)
-        else:
-            said = success(outcome, history, found, results_of(playing, history, outcome))
-        return said._asdict()
-
-    def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
-        """Return the parts of a step's reward, by the names of `Reward`'s fields."""
-        status = None if outcome is None else outcome.status
-        return self._reward.parts(driven_m, infractions, status is Status.COMPLETED, status in FAILED)
+        answer, vehicle = Answer(control_from(action)), self.episode.vehicle
+        self.episode.step([answer])
+        if vehicle.outcome is None and vehicle.ending is not None:  # it has arrived: its last frame is recorded
+            self.episode.step([answer])
+        return self._judged.next()
 
     def close(self) -> None:
         """End the episode, and the simulator where it is ours."""

@@ -17,7 +17,7 @@ from basu.outcome import Status
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from basu.episode import Episode, Observation
+    from basu.episode import Observation, VehicleUnderTest
     from basu.routing import Route
 
 JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
@@ -52,16 +52,16 @@ class Reward:
 
 
 class Preview:
-    """Turns frames of one episode into observations."""
+    """Turns frames of one vehicle under test into observations."""
 
-    def __init__(self, episode: Episode) -> None:
-        self.episode = episode
-        self._ahead = RouteAhead(episode.run.route)
+    def __init__(self, vehicle: VehicleUnderTest) -> None:
+        self._vehicle = vehicle
+        self._ahead = RouteAhead(vehicle.run.route)
 
     def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
         """Return the observation of a frame."""
-        limit_mps = self.episode.run.vehicle.get_speed_limit() / 3.6
-        rows = self.episode.metrics.others(seen.frame)
+        limit_mps = self._vehicle.run.vehicle.get_speed_limit() / 3.6
+        rows = self._vehicle.metrics.others(seen.frame)
         others = np.array([row[2:] for row in rows], np.float64).reshape(1, -1, 6)
         many = self._ahead.observed(
             EgoRows(*(np.array([getattr(seen.frame.ego, name)]) for name in EgoRows._fields)),

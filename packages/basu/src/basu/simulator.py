@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import carla
 
-from basu.agents.process.gate import Gate, Relay
+from basu.agents.process.gate import Gates, Relay
 from basu.errors import SimulatorError, UserError
 from basu.home import replaced_home
 
@@ -55,7 +55,7 @@ class Simulator:
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
     timeout_s: float = 20.0  # of wall time, for an answer of the simulator
-    gate: Gate | None = None  # for agents in processes of their own; None: they connect to the simulator itself
+    gates: Gates | None = None  # for agents in processes of their own; None: they connect to the simulator itself
     uploaded: str | None = None  # the town of the map that BASU sent; the simulator calls it by UPLOADED_NAME
 
     def long_call(self) -> contextlib.AbstractContextManager[None]:
@@ -99,7 +99,7 @@ def simulator_for(spec: SimulatorSpec) -> Iterator[Simulator]:
                 why_gone=lambda: _silence(client, spec),
                 ended=lambda: False,
                 timeout_s=spec.timeout_s,
-                gate=None if spec.is_open else Gate(relay),
+                gates=None if spec.is_open else Gates(relay),
                 uploaded=town,
             )
         finally:
@@ -116,7 +116,7 @@ def simulator_for(spec: SimulatorSpec) -> Iterator[Simulator]:
             why_gone=server.gone,
             ended=server.ended,
             timeout_s=spec.timeout_s,
-            gate=None if spec.is_open else Gate(server),
+            gates=None if spec.is_open else Gates(server),
         )
     finally:
         server.end()

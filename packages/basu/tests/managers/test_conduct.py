@@ -18,9 +18,9 @@ import carla
 import pytest
 
 from basu import simulator as simulator_module
-from basu.agents.process.gate import Gate, Relay
+from basu.agents.process.gate import Gates, Relay
 from basu.cli import main
-from basu.errors import AgentCrashedError
+from basu.errors import AgentCrashedError, UserError
 from basu.managers.base_manager import WorldChanges
 from basu.managers.conduct import Conduct, is_same_control
 from basu.records.history.files import read_history
@@ -89,7 +89,7 @@ def ours(simulator: RunningServer) -> Ours:
     def simulator_for(_: object) -> Iterator[Simulator]:
         relay = Relay([*linden_command(), "gate", "--port", str(simulator.port)])
         try:
-            yield Simulator(client, address, own=True, why_gone=lambda: None, ended=lambda: False, gate=Gate(relay))
+            yield Simulator(client, address, own=True, why_gone=lambda: None, ended=lambda: False, gates=Gates(relay))
         finally:
             relay.end()
 
@@ -175,12 +175,19 @@ def test_an_agent_goes_through_no_gate_but_its_own(simulator: RunningServer, whe
     keeper = own or Relay([*linden_command(), "gate", "--port", str(simulator.port)])
     try:
         with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as agent:
-            address = Gate(keeper).open("world", 1, [], agent.pid)
+            address = Gates(keeper).open("world", 1, [], agent.pid).address
             with socket.create_connection(address) as other:
                 assert other.recv(1) == b""
             agent.communicate(b"\n")
-        address = Gate(keeper).open("world", 1, [], os.getpid())
-        connect(*address, 20.0).get_server_version()
+        gates = Gates(keeper)
+        first, second = (gates.open("world", vehicle, [], os.getpid()) for vehicle in (1, 2))
+        for gate in (first, second):  # an agent of each vehicle at once
+            connect(*gate.address, 20.0).get_server_version()
+        assert first.close() == {}
+        with pytest.raises(UserError, match="no simulator answers"):
+            connect(*first.address, 1.0)
+        connect(*second.address, 20.0).get_server_version()
+        assert second.close() == {}
     finally:
         keeper.end()
 

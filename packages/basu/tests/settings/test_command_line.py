@@ -28,6 +28,7 @@ ANY = st.text(st.characters(exclude_categories=("C",)), min_size=1, max_size=12)
 )
 NAMES = st.text(st.characters(exclude_categories=("C",), exclude_characters=",=-"), min_size=1, max_size=12)
 SPECIAL: dict[str, st.SearchStrategy[Any]] = {
+    "beside": st.lists(NAMES, max_size=3),  # two roles that are the same are refused
     "maps": st.lists(st.sampled_from([str(folder) for folder in Path(__file__).parents[:3]]), max_size=2),
     "sumo": st.sampled_from((None, SUMO_DEMAND, SUMO_RANDOM, SUMO_OFF)),  # a file would have to be there
 }
@@ -86,6 +87,11 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("maps", None)  # those of a simulator that basu starts
     else:
         given.pop("upload_map", None)  # to a simulator that is running
+    if given.get("series") is not None:  # it counts one vehicle a run
+        given.pop("shuttles", None)
+        given.pop("beside", None)
+    elif len(given.get("beside", ())) >= given.get("shuttles", 1):
+        given.pop("shuttles", None)
     for name in refused_by_sumo(given):
         given.pop(name, None)
     if given.get("in_process"):

@@ -1,6 +1,5 @@
 """Claims about config.json as a file: what is read back, what is refused and how, and what is warned of."""
 
-import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.settings.document import RUN, config_document, read_config
+from basu.settings.option import fields_of
 from basu.settings.resolve import resolve
 
 
@@ -32,11 +32,17 @@ def test_a_config_holds_every_option_and_gives_back_what_repeats_the_run(tmp_pat
     path = written(tmp_path, options)
     document = json.loads(path.read_text())
     names = {*document["options"], *document["session"]}
-    assert names == {field.name for field in dataclasses.fields(RunOptions)}
+    assert names == {field.name for field in fields_of(RunOptions) if not field.option.is_rare}
     config = read_config(path, RUN, RunOptions)
     assert resolve(RunOptions, [config.options]) == RunOptions(seed=4, walkers=3, step_limit_s=2.0)
     assert resolve(Scoring, [config.scoring]) == Scoring()
     assert config.warnings == ()
+
+
+def test_a_rare_option_stands_in_a_config_where_it_is_given(tmp_path: Path) -> None:
+    path = written(tmp_path, RunOptions(shuttles=2))
+    assert json.loads(path.read_text())["options"]["shuttles"] == 2
+    assert resolve(RunOptions, [read_config(path, RUN, RunOptions).options]) == RunOptions(shuttles=2)
 
 
 def test_a_folder_means_the_config_in_it(tmp_path: Path) -> None:

@@ -118,6 +118,7 @@ class AgentCalls:
         self._is_ours = is_ours
         self._is_bound = False
         self._config: AgentConfig | None = None
+        self._asked: tuple[int, Mapping[str, tuple[int, Any]]] = (0, {})
         self._as_numpy: frozenset[str] = frozenset()  # ids of the sensors with measurements as arrays
         self.name = agent_class.__name__
         self.agent = self._call("__init__", self._setup_limit_s, agent_class)
@@ -218,6 +219,18 @@ class AgentCalls:
         except UserError as error:  # the set-up was right when the run began: nothing in a step is its fault
             raise self._crashed("run_step", error) from error
         return checked(answer, self.name)
+
+    def ask(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> None:
+        """Note what ``answer`` gives to the agent: in this process nothing is computed meanwhile."""
+        self._asked = (frame, sensor_data)
+
+    def answer(self) -> carla.VehicleControl:
+        """Return the control for what was asked.
+
+        Raises:
+            AgentError: as ``step``.
+        """
+        return self.step(*self._asked)
 
     def destroy(self) -> None:
         """Let the agent put its things away, where it was bound.

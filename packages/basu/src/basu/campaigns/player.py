@@ -175,7 +175,7 @@ class _Player:
             agents = new_agents(plan.loaded, options, job["seed"], options.routes, has_conditions=False)
         session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
         run = plan.jobs[0]._replace(seed=job["seed"])
-        return run_one(session, agents, run, output=self._scratch, name=job["id"])
+        return run_one(session, [plan.shuttles[0]._replace(agents=agents)], run, output=self._scratch, name=job["id"])
 
     def _plan(self, options: RunOptions, job: dict[str, Any]) -> Plan:
         """The plan of an agent on a route; made once."""

@@ -1,7 +1,19 @@
-"""One drive of one vehicle along one route: the loop under runs, cases, the gymnasium environment and notebooks."""
+"""One drive of vehicles under test along a route: the loop under runs, cases, gymnasium environments and notebooks."""
 
-from basu.episode.episode import Episode, Observation, Step
+from basu.episode.episode import Episode
 from basu.episode.spec import EpisodeSpec, case_spec
+from basu.episode.vehicle_under_test import Answer, Driver, Observation, VehicleUnderTest, seed_of
 from basu.episode.world import Town, Towns
 
-__all__ = ["Episode", "EpisodeSpec", "Observation", "Step", "Town", "Towns", "case_spec"]
+__all__ = [
+    "Answer",
+    "Driver",
+    "Episode",
+    "EpisodeSpec",
+    "Observation",
+    "Town",
+    "Towns",
+    "VehicleUnderTest",
+    "case_spec",
+    "seed_of",
+]

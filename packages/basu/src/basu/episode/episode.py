@@ -1,71 +1,50 @@
-"""One drive: a world begins anew, takes a control each step, records every frame, and says when and why it is over.
+"""`Episode`: a world begins anew, takes an answer for each vehicle under test each step, and ends each vehicle's drive.
 
-An episode knows nothing of the agent. The benchmark, a gymnasium environment or a notebook call ``reset`` once and
-``step`` with a control until the step has an outcome.
+An episode knows nothing of agents. The benchmark, a gymnasium environment or a notebook call ``reset`` once and
+``step`` with answers until no vehicle waits for one.
 """
 
 from __future__ import annotations
 
 import contextlib
 import time
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
 from basu import plugins
 from basu.episode.failures import outcome_of
-from basu.episode.world import Towns, asking, next_frame, ticked_by_us, vehicle_at_start
-from basu.errors import (
-    AgentError,
-    SimulatorError,
-    UserError,
-)
-from basu.managers import Live
-from basu.managers.base_manager import BaseManager, CoSimulation, DriverState, Frame, Run, WorldChanges
-from basu.managers.metrics_manager import MetricsManager
+from basu.episode.vehicle_under_test import Driver, VehicleUnderTest, seed_of
+from basu.episode.world import Towns, asking, next_snapshot, settle, spawned_at_start, ticked_by_us
+from basu.errors import AgentError, SimulatorError, UserError
+from basu.managers.base_manager import BaseManager, CoSimulation, Run, WorldChanges
 from basu.managers.observations import Neighbours
-from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
-from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
-from basu.outcome import Outcome, Status
+from basu.outcome import Status
 from basu.routing import plan
+from basu.routing.planned_route import beginning_at
 from basu.simulator import linden_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.conditions import Sumo
     from basu.episode.spec import EpisodeSpec
+    from basu.episode.vehicle_under_test import Answer
     from basu.episode.world import Town
+    from basu.managers.routes_manager import RoutesManager
     from basu.managers.scenario_manager import Playing
-    from basu.records.history import History
+    from basu.outcome import Outcome
+    from basu.records.history.sumo import SumoRecord
     from basu.routing import Route
-    from basu.routing.planned_route import Progress
     from basu.routing.route_file import RouteDescription
     from basu.simulator import Simulator
 
 FAILED_TIMEOUT_S = 1.0  # wall time for each call to a simulator that has failed
 LATE_EVENTS_S = 0.05  # wall time for events of the last frame, which come on connections of their own
-
-
-class Observation(NamedTuple):
-    """One frame before its control is known."""
-
-    frame: Frame
-    sensor_data: dict[str, tuple[int, Any]]  # the latest measurement of each sensor, with its frame
-    progress: Progress  # along the route
-    driven_m: float  # of the route, validly
-
-
-class Step(NamedTuple):
-    """What a control has led to."""
-
-    observation: Observation  # the next frame; the same one again where the episode is over
-    outcome: Outcome | None  # None while the episode goes on
-    ending: Outcome | None  # of the frame in ``observation`` where it is the last one, whatever its control will be
 
 
 class Ground(NamedTuple):
@@ -78,19 +57,27 @@ class Ground(NamedTuple):
     scenarios: ScenarioManager
 
 
-class _Managers(NamedTuple):
-    """The managers of one drive."""
+class _Placed(NamedTuple):
+    """A vehicle that stands at the start of its route."""
 
-    routes: RoutesManager
-    metrics: MetricsManager
-    traffic: TrafficManager
-    sumo: CoSimulation | None
-    sensors: SensorsManager
-    observers: tuple[BaseManager, ...]
+    driver: Driver
+    config: AgentConfig
+    route: Route
+    actor: carla.Vehicle
+    remove: Callable[[], None]
 
 
 class Episode:
-    """A drive that can begin again. ``prepare`` and ``reset`` begin it, ``step`` drives it, ``close`` ends it."""
+    """A drive that can begin again. ``prepare`` and ``reset`` begin it, ``step`` drives it, ``close`` ends it.
+
+    The first vehicle under test has the whole route, the scenarios on it and its weather. Each of the others begins
+    farther along the route. A vehicle leaves the world when its drive is over; the others go on.
+
+    Attributes:
+        ground: the town and the route of the current drive, and of the last one until the next begins.
+        vehicles: the vehicles under test of the current drive, and of the last one until the next begins.
+        traffic: how many others the drive has had, once it is over.
+    """
 
     def __init__(
         self,
@@ -98,41 +85,34 @@ class Episode:
         spec: EpisodeSpec,
         *,
         towns: Towns | None = None,
-        sensors: Callable[[], SensorsManager] = lambda: SensorsManager((), ""),
-        participants: Sequence[BaseManager] = (),
-        observers: Callable[[Live], Sequence[BaseManager]] = lambda _live: (),
+        drivers: Sequence[Driver] = (Driver(),),
         folder: Path = Path(),
     ) -> None:
-        """Describe an episode; the simulator gets no call yet.
+        """Describe an episode with a vehicle under test for each driver; the simulator gets no call yet.
 
-        ``towns`` are shared by all episodes of a simulator. ``sensors`` makes the agent's sensors for one drive.
-        ``participants`` are set up between the traffic and the sensors and are not ticked. ``observers`` makes managers
-        that change nothing and are ticked after all others but the scenarios. ``folder`` is the run's.
+        ``towns`` are shared by all episodes of a simulator. ``folder`` is the run's.
         """
         self._simulator, self._spec = simulator, spec
         self._towns = towns
-        self._new_sensors, self._participants, self._new_observers = sensors, tuple(participants), observers
+        self._drivers = tuple(drivers)
         self._folder = folder
         self._resources = contextlib.ExitStack()
-        self._set_up: list[BaseManager] = []
-        self._prepared = False  # a vehicle stands at the start, and the drive is still to come
+        self._shared: list[BaseManager] = []  # managers of all vehicles that are set up
+        self._traffic: TrafficManager | None = None
+        self._sumo: CoSimulation | None = None
+        self._leaving: list[VehicleUnderTest] = []
+        self._prepared = False  # the vehicles stand at their starts, and the drive is still to come
         self._laid = False  # the ground is new
-        self.ground: Ground | None = None  # of the current drive, and of the last one until the next begins
-        self.history: History | None = None  # the whole record, once ``end`` has made it
-        self.outcome: Outcome | None = None
-        self.bug: Exception | None = None  # an error of the benchmark itself
-        self.agent_error: AgentError | None = None
-        self.traffic: dict[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
-        self.first_frame: int | None = None  # the server's number of the first recorded frame, likewise
-        self._managers: _Managers | None = None
-        self._run: Run | None = None
-        self._driver = DriverState()
-        self._unrecorded: Observation | None = None  # a frame that waits for its control
+        self._snapshot: carla.WorldSnapshot | None = None  # the latest of the drive
+        self._tick = 0  # of it
+        self.ground: Ground | None = None
+        self.vehicles: tuple[VehicleUnderTest, ...] = ()
+        self.traffic: dict[str, int] = {"vehicles": 0, "walkers": 0}
 
     # -- the beginning
 
     def lay(self) -> Ground:
-        """Load the town, plan the route, and lay the scenarios on it; the vehicle is still to come.
+        """Load the town, plan the route, and lay the scenarios on it; the vehicles are still to come.
 
         Raises:
             UserError: the route or a scenario has no place there.
@@ -152,213 +132,264 @@ class Episode:
         return self.ground
 
     def prepare(self, seed: int, folder: Path | None = None) -> None:
-        """Put the vehicle at the start of its route; ``reset`` does so by itself where this was not called.
+        """Put each vehicle at the start of its route; ``reset`` does so by itself where this was not called.
 
         ``folder``, where the run is written, may be given now if it was not known before.
 
         Raises:
-            UserError: the vehicle, the route or a scenario has no place in the world.
+            UserError: a vehicle, the route or a scenario has no place in the world.
             SimulatorError: the simulator failed.
         """
         ground = self.ground if self.ground is not None and self._laid else self.lay()
         self._laid = False
         spec, world = self._spec, ground.world
+        routes = [beginning_at(ground.route, driver.start_m) for driver in self._drivers]
+        placed: list[_Placed] = []
         try:
             with asking("getting the vehicle ready"):
                 self._resources.enter_context(ticked_by_us(world, spec.step_s))
                 if not self._simulator.own:
                     world.reset_all_traffic_lights()  # nothing was loaded anew: they show what the drive before left
-                vehicle = self._resources.enter_context(vehicle_at_start(world, ground.route, spec.config.vehicle))
+                for driver, route in zip(self._drivers, routes, strict=True):
+                    stack = contextlib.ExitStack()
+                    self._resources.callback(stack.close)
+                    config = driver.config or spec.config
+                    actor = stack.enter_context(spawned_at_start(world, route, config.vehicle, driver.role))
+                    placed.append(_Placed(driver, config, route, actor, stack.close))
+                settle(world)
                 world.set_weather(spec.weather)
                 if not spec.is_case:
                     ground.scenarios.try_out(self._simulator.client, world)
         except BaseException:
             self.close()
             raise
-        self._run = Run(
-            client=self._simulator.client,
-            world=world,
-            carla_map=ground.town.carla_map,
-            vehicle=vehicle,
-            route=ground.route,
-            config=spec.config,
-            step_s=spec.step_s,
-            seed=seed,
-            timeout_s=spec.timeout_s,
-            folder=self._folder if folder is None else folder,
-            server_address=self._simulator.address,
-            own_simulator=self._simulator.own,
-            gate=self._simulator.gate,
-            weather=spec.weather_along,
-            neighbours=Neighbours(world, vehicle.id),
-            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
+        below = self._folder if folder is None else folder
+        self.vehicles = tuple(
+            VehicleUnderTest(each.driver, self._run(ground, each, number, seed, below), spec, each.remove)
+            for number, each in enumerate(placed, 1)
         )
         self._prepared = True
 
-    def reset(self, seed: int | None = None) -> Observation:
-        """Begin a drive and return its first frame; the drive before is closed.
+    def _run(self, ground: Ground, placed: _Placed, number: int, seed: int, folder: Path) -> Run:
+        """Return the data of a vehicle's drive; ``number`` counts from 1, ``seed`` and ``folder`` are the run's."""
+        spec = self._spec
+        return Run(
+            client=self._simulator.client,
+            world=ground.world,
+            carla_map=ground.town.carla_map,
+            vehicle=placed.actor,
+            route=placed.route,
+            config=placed.config,
+            step_s=spec.step_s,
+            seed=seed_of(seed, number),
+            timeout_s=spec.timeout_s,
+            folder=folder / placed.driver.folder,
+            server_address=self._simulator.address,
+            own_simulator=self._simulator.own,
+            gates=self._simulator.gates,
+            weather=spec.weather_along if number == 1 else (),
+            neighbours=Neighbours(ground.world, placed.actor.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
+        )
 
-        ``seed`` may be left out where ``prepare`` was given it, and is 0 otherwise.
+    def reset(self, seed: int | None = None) -> None:
+        """Begin a drive with its first frame; the drive before is closed.
+
+        A vehicle has its outcome already if its agent is not ready. ``seed`` may be left out where ``prepare`` was
+        given it, and is 0 otherwise.
 
         Raises:
             UserError, SimulatorError: it cannot begin, see ``prepare``; or a manager is not ready.
-            AgentError: a participant is not ready.
         """
         if not self._prepared:
             self.prepare(seed or 0)
         self._prepared = False
-        run, ground = self._run, self.ground
-        assert run is not None, "it is prepared"
-        assert ground is not None, "likewise"
-        self.history = self.outcome = self.bug = self.agent_error = None
-        self._driver = DriverState()
-        routes = RoutesManager(self._spec.stop_after_s)
-        metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
-        ground.scenarios.join(routes, metrics)
-        sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic, self._reserved_m(run, ground))
-        sumo = None if self._spec.sumo is None else _cosimulation(self._spec.sumo, routes)
-        observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
-        self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
-        # participants before sensors: another program's agent says only once it is set up what it wants to sense
-        joined = () if sumo is None else (sumo,)
-        for manager in (traffic, *joined, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
-            self._set_up.append(manager)
-            manager.setup(run)
-        return self._observe(None)
+        ground = self.ground
+        assert ground is not None, "it is prepared"
+        self._snapshot, self._tick = None, 0
+        first = self.vehicle
+        ground.scenarios.join(first.routes, first.metrics)
+        self._traffic = TrafficManager(self._spec.traffic, self._reserved_m(ground))
+        self._sumo = None if self._spec.sumo is None else _cosimulation(self._spec.sumo, first.routes)
+        for manager in (self._traffic, *(() if self._sumo is None else (self._sumo,))):
+            self._shared.append(manager)
+            manager.setup(first.run)
+        for vehicle in self.vehicles:
+            try:
+                vehicle.set_up((ground.scenarios,) if vehicle is first else ())
+            except AgentError as error:  # noqa: PERF203 - once for each vehicle
+                self.fail(error, vehicle)
+        if self.driving:
+            self._observe()
 
-    def _reserved_m(self, run: Run, ground: Ground) -> list[tuple[float, float]]:
-        """Return the places that traffic leaves free: a case's actors come after it, and all of them must come.
+    def _reserved_m(self, ground: Ground) -> list[tuple[float, float]]:
+        """Return the places that traffic leaves free.
+
+        A case's actors come after it, and all of them must come. The traffic itself keeps away from the first vehicle.
 
         Raises:
             ScenarioError: the case has no place on its route.
         """
-        if not self._spec.is_case or self._spec.traffic.is_empty:
+        if self._spec.traffic.is_empty:
             return []
-        ground.scenarios.lay(run.route, run.carla_map)
-        return ground.scenarios.reserved_m()
+        starts_m = [vehicle.run.route.points_m[0] for vehicle in self.vehicles[1:]]
+        reserved_m = [(float(x_m), float(y_m)) for x_m, y_m, _ in starts_m]
+        if self._spec.is_case:
+            ground.scenarios.lay(ground.route, ground.town.carla_map)
+            reserved_m += ground.scenarios.reserved_m()
+        return reserved_m
 
     # -- the drive
 
-    def step(
-        self, control: carla.VehicleControl, *, requested: carla.VehicleControl | None = None, manual: bool = False
-    ) -> Step:
-        """Record the current frame with its control, apply the control, and let the simulator make the next frame.
+    @property
+    def driving(self) -> list[VehicleUnderTest]:
+        """The vehicles that drive: those without an outcome."""
+        return [vehicle for vehicle in self.vehicles if vehicle.outcome is None]
 
-        ``manual`` says that a person gave the control; ``requested`` is then the agent's own. The outcome belongs to
-        the frame that was just recorded.
+    def step(self, answers: Sequence[Answer | None]) -> None:
+        """Record the current frame with the answers, apply the controls, and let the simulator make the next frame.
+
+        ``answers`` has one for each vehicle that waits for it, in the order of ``vehicles``; None for the others. An
+        outcome that a vehicle has afterwards belongs to the frame that was just recorded. Where no vehicle goes on,
+        the simulator makes no frame.
 
         Raises:
             UserError, SimulatorError: the drive cannot go on; ``fail`` says what that means for its outcome.
         """
-        managers, run, ground = self._managers, self._run, self.ground
-        observation = self._unrecorded
-        if managers is None or run is None or ground is None or observation is None:
+        waiting, ground = [vehicle for vehicle in self.vehicles if vehicle.waits], self.ground
+        if not waiting or ground is None:
             raise UserError("this episode does not wait for a control; call reset() first")
-        frame = observation.frame
-        self._driver.control, self._driver.manual = control, manual
-        self._driver.requested = control if requested is None else requested
-        self._record()
-        managers.routes.change_weather(frame)
-        for observer in managers.observers:
-            observer.tick(frame)
-        ground.scenarios.tick(frame)
-        self.outcome = managers.routes.outcome or ground.scenarios.outcome
-        if self.outcome is not None:
-            return Step(observation, self.outcome, self.outcome)
+        for vehicle, answer in zip(self.vehicles, answers, strict=True):
+            if vehicle.waits:
+                self._take(vehicle, answer, ground.scenarios)
+        if not self.driving:
+            return
         # A simulator that has ended gets no further step: the Traffic Manager's thread in the official client would run
         # into its own time-out meanwhile, and that ends the whole process.
         if self._simulator.ended():
             raise SimulatorError("the simulator ended")
-        applied = ground.scenarios.through(control)
-        managers.metrics.applied(applied)
-        if managers.sumo is not None:
-            managers.sumo.tick(frame)
-        run.vehicle.apply_control(applied)
-        run.changes.control = applied
-        return Step(self._observe(frame), None, managers.routes.outcome)
+        self._apply(ground.scenarios)
+        for vehicle in waiting:
+            if vehicle.outcome is not None:
+                self._send_away(vehicle)
+        self._observe()
 
-    def _observe(self, before: Frame | None) -> Observation:
-        """Make the next frame, wait for its sensors, and advance along the route."""
-        run, managers = self._run, self._managers
-        assert run is not None, "reset has prepared it"
-        assert managers is not None, "likewise"
-        frame = next_frame(run, before)
-        managers.sensors.tick(frame)
-        managers.routes.tick(frame)
-        self._unrecorded = Observation(
-            frame, managers.sensors.data, managers.routes.progress, managers.routes.valid.driven_m
-        )
-        return self._unrecorded
+    def _take(self, vehicle: VehicleUnderTest, answer: Answer | None, scenarios: ScenarioManager) -> None:
+        """Take an answer of one vehicle, and judge whether its drive is over.
 
-    def _record(self) -> None:
-        """Record the frame that waits for its control."""
-        observation, self._unrecorded = self._unrecorded, None
-        if observation is not None and self._managers is not None:
-            self._managers.metrics.tick(observation.frame)
+        Raises:
+            UserError, SimulatorError: the drive cannot go on.
+        """
+        if answer is None:
+            raise UserError(f"the vehicle '{vehicle.role}' waits for an answer; give one for each vehicle")
+        vehicle.take(answer)
+        ended_by_scenario = None
+        if vehicle is self.vehicle:
+            scenarios.tick(vehicle.observation.frame)
+            ended_by_scenario = scenarios.outcome
+        vehicle.outcome = vehicle.routes.outcome or ended_by_scenario
+
+    def _apply(self, scenarios: ScenarioManager) -> None:
+        """Give each vehicle that drives its control, and let SUMO make its part of the next step."""
+        for vehicle in self.driving:
+            vehicle.record_applied(scenarios.through if vehicle is self.vehicle else lambda control: control)
+        if self._sumo is not None:
+            self._sumo.tick(self.driving[0].observation.frame)
+        for vehicle in self.driving:
+            vehicle.apply()
+
+    def _observe(self) -> None:
+        """Make the next frame, and let each vehicle that drives take it in."""
+        run = self.vehicle.run
+        is_first = self._snapshot is None
+        self._snapshot = snapshot = next_snapshot(run, self._snapshot)
+        self._tick = 0 if is_first else self._tick + 1
+        for vehicle in self.driving:
+            try:
+                vehicle.see(snapshot, self._tick)
+            except AgentError as error:  # noqa: PERF203 - once for each vehicle
+                self.fail(error, vehicle)
+        for vehicle in [each for each in self._leaving if each.parts()]:
+            self._leaving.remove(vehicle)
+            time.sleep(LATE_EVENTS_S)
+            vehicle.make_history(self._sumo_record(vehicle))
+            vehicle.leave()
+
+    def _send_away(self, vehicle: VehicleUnderTest) -> None:
+        """Let a vehicle stop where it is and leave the world a few steps later: its drive is over."""
+        vehicle.halt()
+        self._leaving.append(vehicle)
 
     # -- the end
 
-    def fail(self, error: BaseException) -> Outcome:
-        """Classify what ended the drive and set the outcome; what the agent failed in is recorded as well.
+    def fail(self, error: BaseException, vehicle: VehicleUnderTest | None = None) -> Outcome:
+        """Classify what ended the drive of ``vehicle``, or of each that drives without it, and set the outcomes.
 
         Raises:
             BaseException: ``error`` itself, where it is neither an exception nor the user's interruption.
         """
-        with contextlib.suppress(RuntimeError):  # the simulator is gone
-            self._record()
-        if isinstance(error, AgentError):
-            self.agent_error = error
+        ended = self.driving if vehicle is None else [vehicle]
         outcome = outcome_of(error, self._simulator.why_gone)
-        if outcome.status is Status.BENCHMARK_FAILED and isinstance(error, Exception):
-            self.bug = error
-        self.outcome = outcome
+        for each in ended:
+            each.fail(error, outcome)
+        if vehicle is not None and self.driving:
+            self._send_away(vehicle)
         return outcome
 
     def end(self) -> None:
-        """Make the record of the drive, ``history``, and close everything; an agent's error in that joins the outcome.
+        """Make the record of each vehicle, ``history``, and close everything.
 
         The last frame's events may be under way still: one more step, which is not recorded, and a moment bring them.
         """
-        if self._run is not None and self._managers is not None:
-            if self.outcome is not None and self.outcome.status is Status.SIMULATOR_FAILED:
-                self._run.client.set_timeout(FAILED_TIMEOUT_S)
-            if self._managers.metrics.ticks:
+        if self._traffic is not None:
+            run, outcomes = self.vehicle.run, [vehicle.outcome for vehicle in self.vehicles]
+            if any(outcome is not None and outcome.status is Status.SIMULATOR_FAILED for outcome in outcomes):
+                run.client.set_timeout(FAILED_TIMEOUT_S)
+            unrecorded = [vehicle for vehicle in self.vehicles if vehicle.history is None and vehicle.metrics.ticks]
+            if unrecorded:
                 with contextlib.suppress(RuntimeError):  # the simulator is gone, and sends no more events
-                    self._run.world.tick(self._run.timeout_s)
+                    run.world.tick(run.timeout_s)
                     time.sleep(LATE_EVENTS_S)
-                sumo = None if self._managers.sumo is None else self._managers.sumo.record()
-                self.history = replace(self._run.numbering.applied(self._managers.metrics.history()), sumo=sumo)
+            for vehicle in unrecorded:
+                vehicle.make_history(self._sumo_record(vehicle))
         self.close()
 
     def close(self) -> None:
-        """Put away managers, vehicle and settings; may be called at any time and more than once."""
-        while self._set_up:
-            try:
-                self._set_up.pop().close()
-            except AgentError as error:  # noqa: PERF203 - some managers, once a drive
-                if self.outcome is not None:  # the drive is over and keeps its status
-                    self.outcome = self.outcome._replace(message=f"{self.outcome.message}; afterwards {error}")
-        if self._managers is not None:
-            self.traffic, self.first_frame = dict(self._managers.traffic.count), self._managers.metrics.first_frame
-            if self._managers.sumo is not None:
-                self.traffic = {kind: n + self._managers.sumo.count[kind] for kind, n in self.traffic.items()}
-        self._managers = self._run = self._unrecorded = None
+        """Put away managers, vehicles and settings; may be called at any time and more than once."""
+        for vehicle in reversed(self.vehicles):
+            vehicle.close()
+        while self._shared:
+            self._shared.pop().close()
+        if self._traffic is not None:
+            self.traffic = dict(self._traffic.count)
+            if self._sumo is not None:
+                self.traffic = {kind: n + self._sumo.count[kind] for kind, n in self.traffic.items()}
+        self._traffic = self._sumo = None
+        self._leaving.clear()
         self._prepared = self._laid = False
         self._resources.close()
+
+    def _sumo_record(self, vehicle: VehicleUnderTest) -> SumoRecord | None:
+        """Return the record of SUMO's traffic, which is written with that of the first vehicle."""
+        return None if self._sumo is None or vehicle is not self.vehicle else self._sumo.record()
 
     # -- what it has found
 
     @property
-    def metrics(self) -> MetricsManager:
-        """The record of the current drive while it lasts."""
-        assert self._managers is not None, "the drive lasts from reset to end"
-        return self._managers.metrics
+    def vehicle(self) -> VehicleUnderTest:
+        """The first vehicle under test, mostly the only one.
+
+        Raises:
+            UserError: no vehicle stands in the world yet.
+        """
+        if not self.vehicles:
+            raise UserError("this episode has no vehicle yet; call reset() first")
+        return self.vehicles[0]
 
     @property
-    def run(self) -> Run:
-        """The current drive's client, world, vehicle and route."""
-        assert self._run is not None, "the drive lasts from prepare to end"
-        return self._run
+    def is_case(self) -> bool:
+        """Whether the episode begins and ends with one scenario."""
+        return self._spec.is_case
 
     @property
     def playing(self) -> Sequence[Playing]:

@@ -1,4 +1,4 @@
-"""The world of an episode: its town with lanes, its clock, its weather, and the vehicle under test at the start."""
+"""The world of an episode: its town with lanes, its clock, its weather, and a vehicle under test at its start."""
 
 from __future__ import annotations
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from basu.routing.lane_graph import LaneGraph
     from basu.simulator import Simulator
 
-ROLE = "hero"  # as the leaderboard and CARLA's replayer call the vehicle under test
 DROP_M = 0.3  # above the road, so that no wheel begins inside of it
 SETTLE_TICKS = 20  # from the drop to rest
 
@@ -170,14 +169,14 @@ def weather_called(name: str) -> carla.WeatherParameters:
 
 
 @contextlib.contextmanager
-def vehicle_at_start(world: carla.World, route: Route, blueprint_id: str) -> Iterator[carla.Vehicle]:
-    """The vehicle at rest at the first point of ``route``; destroyed afterwards.
+def spawned_at_start(world: carla.World, route: Route, blueprint_id: str, role: str) -> Iterator[carla.Vehicle]:
+    """The vehicle above the first point of ``route``, with its brake on; destroyed afterwards.
 
     Raises:
         UserError: there is no such vehicle, or the place is taken.
     """
     blueprint = _blueprint(world.get_blueprint_library(), blueprint_id)
-    blueprint.set_attribute("role_name", ROLE)
+    blueprint.set_attribute("role_name", role)
     pose = route.waypoints[0].transform
     pose.location.z += DROP_M
     try:
@@ -186,12 +185,16 @@ def vehicle_at_start(world: carla.World, route: Route, blueprint_id: str) -> Ite
         raise UserError(f"{blueprint_id} cannot be put at the beginning of route '{route.id}': {error}") from error
     try:
         vehicle.apply_control(carla.VehicleControl(brake=1.0))
-        for _ in range(SETTLE_TICKS):
-            world.tick()
         yield vehicle
     finally:
         with contextlib.suppress(RuntimeError):  # where the simulator is gone, so is the vehicle
             vehicle.destroy()
+
+
+def settle(world: carla.World) -> None:
+    """Let vehicles that were just spawned come to rest."""
+    for _ in range(SETTLE_TICKS):
+        world.tick()
 
 
 def _blueprint(library: carla.BlueprintLibrary, blueprint_id: str) -> carla.ActorBlueprint:
@@ -204,23 +207,39 @@ def _blueprint(library: carla.BlueprintLibrary, blueprint_id: str) -> carla.Acto
     return library.find(blueprint_id)
 
 
-def next_frame(run: Run, before: Frame | None) -> Frame:
-    """Let the simulator make one step and read its snapshot."""
+def next_snapshot(run: Run, before: carla.WorldSnapshot | None) -> carla.WorldSnapshot:
+    """Let the simulator make one step and read its snapshot; ``before`` is the one of the step before.
+
+    Raises:
+        AgentCrashedError: there was another step, in a simulator of our own.
+        UserError: likewise, in another one.
+        SimulatorError: the simulator made none.
+    """
     try:
         number = run.world.tick(run.timeout_s)
         snapshot = run.world.get_snapshot()
     except RuntimeError as error:
         raise SimulatorError(f"the simulator did not make a step: {reason(error)}") from error
+    if before is None or snapshot.frame == before.frame + 1:
+        return snapshot
+    if run.own_simulator:
+        raise AgentCrashedError(ticked("the agent", before.frame, snapshot.frame))
+    raise UserError(
+        f"the simulator went from frame {before.frame} to {snapshot.frame} (requested: {number}); "
+        "another program ticks it too, and a benchmark has to be the only one"
+    )
+
+
+def frame_in(snapshot: carla.WorldSnapshot, tick: int, run: Run) -> Frame:
+    """Return the frame of a vehicle under test in a snapshot.
+
+    Raises:
+        AgentCrashedError: the vehicle is gone, in a simulator of our own.
+        SimulatorError: likewise, in another one.
+    """
     ego = snapshot.find(run.vehicle.id)
-    if ego is None and run.own_simulator:
+    if ego is not None:
+        return Frame(tick, snapshot.frame, snapshot, ego_in(ego))
+    if run.own_simulator:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
-    if ego is None:
-        raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
-    if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
-        raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
-    if before is not None and snapshot.frame != before.server_frame + 1:
-        raise UserError(
-            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
-            "another program ticks it too, and a benchmark has to be the only one"
-        )
-    return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))
+    raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")

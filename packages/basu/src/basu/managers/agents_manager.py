@@ -134,10 +134,28 @@ class AgentsManager(BaseManager):
         self._sensor_data = sensor_data
 
     def tick(self, frame: Frame) -> None:
-        """Ask for a control, and the person whether it counts."""
+        """Ask for a control and wait for it: `ask`, then `answer`."""
+        self.ask(frame)
+        self.answer(frame)
+
+    def ask(self, frame: Frame) -> None:
+        """Ask the agent for a control; an agent in its own process computes it meanwhile.
+
+        Raises:
+            AgentError: its vehicle had another control, or its process died.
+            SimulatorError: the gate has ended.
+        """
         self._conduct.before(frame)
         self._passage.see(frame)
-        self.control = self.requested = self._agent.step(frame.server_frame, self._sensor_data)
+        self._agent.ask(frame.server_frame, self._sensor_data)
+
+    def answer(self, frame: Frame) -> None:
+        """Wait for the agent's control, and ask the person whether it counts.
+
+        Raises:
+            AgentError: the agent failed, or gave none.
+        """
+        self.control = self.requested = self._agent.answer()
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)
             self._by_hand = by_hand is not None

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.autonomous_agent import AgentConfig
-    from basu.agents.process.gate import Gate
+    from basu.agents.process.gate import Gates
     from basu.managers.observations import Neighbours
     from basu.managers.person import Person
     from basu.records.history.sumo import SumoRecord
@@ -47,7 +47,7 @@ class Run:
     timeout_s: float  # of wall time to wait for the simulator
     folder: Path  # of the run; has another name until the run is over
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
-    gate: Gate | None = None  # between the simulator and an agent with a process of its own
+    gates: Gates | None = None  # between the simulator and agents with processes of their own
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
     neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks

@@ -49,16 +49,16 @@ class Passage:
         Raises:
             SimulatorError: the gate has ended.
         """
-        if not self._is_remote or self._is_open or run.gate is None:
+        if not self._is_remote or self._is_open or run.gates is None:
             self._is_open = self._is_open or self._is_remote
             return run.server_address
-        self._gate, known = run.gate, []
+        known: list[int] = []
         if track == OBJECTS:
             known = [actor.id for actor in run.world.get_actors().filter(MAP_ACTORS)]
             self._sight = Sight(run.world, run.vehicle)
-        address = self._gate.open(track, run.vehicle.id, known, self._process)
+        self._gate = run.gates.open(track, run.vehicle.id, known, self._process)
         self._see(run.world.get_snapshot())
-        return address
+        return self._gate.address
 
     def told(self, route: Route, config_values: dict[str, Any]) -> dict[str, Any]:
         """What an agent learns of its route and configuration; outside of the track ``world`` no name of either.

@@ -56,6 +56,7 @@ class SensorsManager(BaseManager):
         self._actors: list[Any] = []
         self._streams = SensorStreams(0.0)
         self._timeout_s = 0.0
+        self._is_stopped = False
         self.data: dict[str, tuple[int, Any]] = {}
 
     @property
@@ -96,20 +97,30 @@ class SensorsManager(BaseManager):
         except SensorSilentError as error:
             raise SimulatorError(str(error)) from error
 
-    def close(self) -> None:
-        """Stop listening, let go of what was measured, and take the sensors away, whatever the agent's process says."""
+    def stop(self) -> None:
+        """Stop listening. `close` then makes no step of the world: it comes `PARTING_TICKS` steps later."""
+        if self._is_stopped:
+            return
+        self._is_stopped = True
         try:
             if self._listener is not None and self._actors:
                 self._listener.stop_hearing()
         finally:
             self._streams.stop()
-            self._take_away()
 
-    def _take_away(self) -> None:
+    def close(self) -> None:
+        """Stop listening, let go of what was measured, and take the sensors away, whatever the agent's process says."""
+        parting_ticks = 0 if self._is_stopped else PARTING_TICKS
+        try:
+            self.stop()
+        finally:
+            self._take_away(parting_ticks)
+
+    def _take_away(self, parting_ticks: int) -> None:
         if not self._actors:
             return
         with contextlib.suppress(RuntimeError):  # the simulator is gone, and all sensors with it
-            for _ in range(PARTING_TICKS):
+            for _ in range(parting_ticks):
                 self._world.tick(self._timeout_s)
             # by command: the client warns of sensors that are destroyed and that it never listened to
             self._client.apply_batch_sync([carla.command.DestroyActor(actor.id) for actor in self._actors])

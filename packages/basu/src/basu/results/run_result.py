@@ -10,6 +10,7 @@ from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.documents import RunRecord, read_run
 from basu.output.report.runs_picture import Trace, paths_png, speeds_png
+from basu.output.report.shuttles import read_shuttles
 from basu.results.picture import Picture
 
 if TYPE_CHECKING:
@@ -64,6 +65,27 @@ class RunResult:
     def route(self) -> str:
         """The route's id."""
         return str(self.result.meta["route"])
+
+    @property
+    def shuttles(self) -> tuple[RunResult, ...]:
+        """The result of each vehicle under test, this one first; this one alone for a run with one vehicle.
+
+        Raises:
+            UserError: a folder of one is not what it should be.
+        """
+        document = read_shuttles(self.folder)
+        others = [] if document is None else document["shuttles"][1:]
+        return (self, *(RunResult(self.folder / each["folder"]) for each in others))
+
+    @property
+    def contacts(self) -> list[dict[str, Any]]:
+        """The contacts between the vehicles under test, as ``shuttles.json`` has them; empty with one vehicle.
+
+        Raises:
+            UserError: the document cannot be read.
+        """
+        document = read_shuttles(self.folder)
+        return [] if document is None else list(document["contacts"])
 
     @property
     def outcome(self) -> Outcome:

@@ -1,4 +1,4 @@
-"""The planned route: lane-centre points with arc length, its part up to a place, and progress along it."""
+"""The planned route: lane-centre points with arc length, its part up to or from a place, and progress along it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from basu.errors import UserError
 
 if TYPE_CHECKING:
     import carla
@@ -90,6 +92,30 @@ def until(route: Route, s_m: float) -> Route:
         **per_point,
         stops=tuple(stop for stop in route.stops if stop.s_m <= last_s_m),
         controls=tuple(control for control in route.controls if control.s_m <= last_s_m),
+    )
+
+
+def beginning_at(route: Route, s_m: float) -> Route:
+    """Return the route as if it began at its first point not before ``s_m``; distances along it count from there.
+
+    A route that is cut has no timetable: what is due at its stops counts from a departure at its old beginning.
+
+    Raises:
+        UserError: the route does not reach so far.
+    """
+    if s_m <= 0.0:
+        return route
+    first = int(np.searchsorted(route.s_m, s_m))
+    if first > len(route.s_m) - LEAST_POINTS:
+        raise UserError(f"route '{route.id}' is {route.length_m:.0f} m long, and no vehicle can begin at {s_m:.0f} m")
+    from_m = float(route.s_m[first])
+    per_point = {name: getattr(route, name)[first:] for name in PER_POINT}
+    return replace(
+        route,
+        **{**per_point, "s_m": route.s_m[first:] - from_m},
+        stops=tuple(replace(stop, s_m=stop.s_m - from_m) for stop in route.stops if stop.s_m >= from_m),
+        controls=tuple(replace(each, s_m=each.s_m - from_m) for each in route.controls if each.s_m >= from_m),
+        timetable=None,
     )
 
 

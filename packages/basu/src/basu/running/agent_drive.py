@@ -1,11 +1,11 @@
-"""`AgentDrive`: one drive of an agent, on a route or in a case, with its recording and the managers that show it."""
+"""`AgentDrive`: one drive of agents, on a route or in a case, with its recording and the managers that show it."""
 
 from __future__ import annotations
 
 import traceback
 from typing import TYPE_CHECKING
 
-from basu.episode import Episode
+from basu.episode import Driver, Episode
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.output.progress import ProgressBar
@@ -19,11 +19,10 @@ if TYPE_CHECKING:
 
     from basu.episode import EpisodeSpec, Towns
     from basu.managers import Live
-    from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
     from basu.options.drive import DriveOptions
     from basu.running.drive import Driven
-    from basu.running.preparation import SensorSet
+    from basu.running.shuttles import Shuttle
     from basu.simulator import Simulator
 
 
@@ -35,13 +34,10 @@ class AgentDrive:
         simulator: Simulator,
         towns: Towns,
         spec: EpisodeSpec,
-        agents: AgentsManager,
-        sensors: SensorSet,
+        shuttles: Sequence[Shuttle],
         options: DriveOptions,
         *,
-        agent: str,
         name: str,
-        by_agent: bool,
         quiet: bool,
     ) -> None:
         """Describe the drive; the simulator gets no call yet.
@@ -49,28 +45,35 @@ class AgentDrive:
         Args:
             simulator: the simulator to drive in; it stays open after the drive.
             towns: the towns that the simulator has loaded.
-            spec: world, task and vehicle of the drive.
-            agents: a manager with a newly created agent.
-            sensors: the sensors that the agent declares.
-            options: what is recorded and shown.
-            agent: the agent's name.
+            spec: world and task of the drive, and the vehicle of the first shuttle.
+            shuttles: the vehicles under test, each with a newly created agent.
+            options: what is recorded and shown, of the first shuttle.
             name: file name of the recorder log on a simulator at ``--host``.
-            by_agent: True if a sensor that cannot be served is the agent's failure.
             quiet: True to print no progress and no messages.
         """
-        self._simulator, self._agents, self._options, self._quiet = simulator, agents, options, quiet
-        self._agent, self._log_name = agent, name
+        self._simulator, self._shuttles, self._options, self._quiet = simulator, shuttles, options, quiet
+        self._log_name = name
         self._recording: RecordingManager | None = None
-        is_watched = options.shows_sensors or agents.person is not None
-        self.episode = Episode(
-            simulator,
-            spec,
-            towns=towns,
+        self.episode = Episode(simulator, spec, towns=towns, drivers=[self._driver(shuttle) for shuttle in shuttles])
+
+    def _driver(self, shuttle: Shuttle) -> Driver:
+        """Return what drives and watches one vehicle; outputs show the first."""
+        agents, is_first = shuttle.agents, shuttle is self._shuttles[0]
+        is_watched = is_first and (self._options.shows_sensors or agents.person is not None)
+        return Driver(
+            role=shuttle.role,
+            start_m=shuttle.start_m,
+            config=agents.config,
+            folder=shuttle.folder,
             sensors=lambda: SensorsManager(
-                *sensors, late=agents.late_sensors, listener=agents, is_watched=is_watched, by_agent=by_agent
+                *shuttle.sensors,
+                late=agents.late_sensors,
+                listener=agents,
+                is_watched=is_watched,
+                by_agent=shuttle.loaded.file is not None,
             ),
             participants=[agents],
-            observers=self._observers,
+            observers=self._observers if is_first else lambda _live: (),
         )
 
     @property
@@ -78,8 +81,8 @@ class AgentDrive:
         """The path of CARLA's log as the simulator gave it; None where none was begun."""
         return None if self._recording is None else self._recording.path
 
-    def play(self, seed: int, folder: Path) -> Driven:
-        """Drive to the end, whatever that is, and close the episode; files of the drive go into ``folder``.
+    def play(self, seed: int, folder: Path) -> list[Driven]:
+        """Drive each vehicle to its end, whatever that is, and close the episode; files go into ``folder``.
 
         Raises:
             UserError, AgentError: it cannot begin like this.
@@ -87,20 +90,22 @@ class AgentDrive:
         """
         try:
             self.episode.prepare(seed, folder)
-            driven = drive(self.episode, self._agents)
+            driven = drive(self.episode, [shuttle.agents for shuttle in self._shuttles])
         finally:
             self.episode.close()
-        if self._options.debug and driven.agent_error is not None:
-            traceback.print_exception(driven.agent_error)
+        for each in driven:
+            if self._options.debug and each.agent_error is not None:
+                traceback.print_exception(each.agent_error)
         return driven
 
     def _observers(self, live: Live) -> Sequence[BaseManager]:
         """The progress bar, the recording, and all that shows the drive."""
-        live = live._replace(agents=self._agents)
+        first = self._shuttles[0]
+        live = live._replace(agents=first.agents)
         found: list[BaseManager] = [] if self._quiet else [ProgressBar(live)]
         if self._options.record:
-            here = str((self.episode.run.folder / LOG_FILE).resolve())
+            here = str((self.episode.vehicle.run.folder / LOG_FILE).resolve())
             self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
             found.append(self._recording)
         say = (lambda _: None) if self._quiet else print
-        return [*found, *output_managers(self._options, ShownDrive(live, self._agent, say))]
+        return [*found, *output_managers(self._options, ShownDrive(live, first.loaded.name, say))]

@@ -34,7 +34,7 @@ COUNTED = frozenset({Fault.NONE, Fault.AGENT})
 
 
 def counts(result: Result) -> bool:
-    """Return whether a drive says something of the agent; the others are driven again when a batch goes on."""
+    """Return whether a drive says something of its agent; the others are driven again when a batch goes on."""
     return result.outcome.status.fault in COUNTED or result.success.passed is False
 
 

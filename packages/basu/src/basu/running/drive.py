@@ -7,16 +7,17 @@ import traceback
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.episode import Answer
+from basu.errors import AgentError
 from basu.metrics.result import judge
 from basu.metrics.success import Success
 from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from basu.episode import Episode
-    from basu.errors import AgentError
+    from basu.episode import Episode, VehicleUnderTest
     from basu.managers.agents_manager import AgentsManager
     from basu.metrics.result import Result
     from basu.records.history import History
@@ -37,17 +38,24 @@ class DriveDone(NamedTuple):
     """A drive on a route or in a case that is over, or that could not begin."""
 
     folder: Path | None  # a draft until the command has given it its name; None where nothing is left
-    result: Result
+    result: Result  # of the first vehicle, mostly the only one
     bug: Exception | str | None = None  # an error of our own: itself, or its traceback from another process
     number: int = 0  # of the job
     attempts: int = 1  # at the job
     packed: bytes | None = None  # the folder as a tar file, from a worker that keeps no folder
     cost: Mapping[str, Any] = {}  # of the worker: processor time, memory, host
+    beside: tuple[Result, ...] = ()  # of the other vehicles of a run with several
 
     def to_send(self) -> DriveDone:
         """Return what another process may have of it: no record, which lies in the folder, and no exception."""
         bug = "".join(traceback.format_exception(self.bug)) if isinstance(self.bug, Exception) else self.bug
-        return self._replace(result=replace(self.result, history=None), bug=bug)
+        beside = tuple(replace(each, history=None) for each in self.beside)
+        return self._replace(result=replace(self.result, history=None), beside=beside, bug=bug)
+
+    @property
+    def results(self) -> tuple[Result, ...]:
+        """The result of each vehicle."""
+        return (self.result, *self.beside)
 
 
 def not_begun(outcome: Outcome) -> DriveDone:
@@ -61,25 +69,52 @@ def lost(sentence: str) -> DriveDone:
     return not_begun(Outcome(Status.BENCHMARK_FAILED, sentence))
 
 
-def drive(episode: Episode, agents: AgentsManager) -> Driven:
-    """Drive an episode, in which ``agents`` takes part, to its end, whatever that is."""
+def drive(episode: Episode, agents: Sequence[AgentsManager]) -> list[Driven]:
+    """Drive an episode to the end of each of its vehicles, whatever that is; ``agents`` has one manager for each."""
     began_s = time.perf_counter()
+    ended_s: dict[VehicleUnderTest, float] = {}
     try:
-        seen, outcome = episode.reset(), None
+        episode.reset()
         began_s = time.perf_counter()
-        while outcome is None:
-            agents.perceive(seen.sensor_data)
-            agents.tick(seen.frame)
-            seen, outcome, _ = episode.step(agents.control, requested=agents.requested, manual=agents.manual)
+        while episode.driving:
+            answers = _answers(episode, agents)
+            if episode.driving:
+                episode.step(answers)
+            now_s = time.perf_counter()
+            ended_s |= {each: now_s for each in episode.vehicles if each.outcome is not None and each not in ended_s}
     except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the episode classifies it
-        outcome = episode.fail(error)
-    wall_s = time.perf_counter() - began_s
+        episode.fail(error)
+    now_s = time.perf_counter()
     episode.end()
-    return Driven(
-        episode.outcome or outcome,
-        episode.history,
-        wall_s,
-        episode.first_frame,
-        episode.bug,
-        episode.agent_error,
-    )
+    return [_driven(vehicle, ended_s.get(vehicle, now_s) - began_s) for vehicle in episode.vehicles]
+
+
+def _answers(episode: Episode, agents: Sequence[AgentsManager]) -> list[Answer | None]:
+    """Ask the agents of all vehicles that wait, then collect their answers; an agent that fails ends its own drive.
+
+    Agents with processes of their own work at the same time: the slowest of them says how long this takes.
+    """
+    answers: list[Answer | None] = [None] * len(agents)
+    asked = []
+    for number, (vehicle, manager) in enumerate(zip(episode.vehicles, agents, strict=True)):
+        if vehicle.waits:
+            seen = vehicle.observation
+            manager.perceive(seen.sensor_data)
+            try:
+                manager.ask(seen.frame)
+                asked.append((number, vehicle, manager))
+            except AgentError as error:
+                episode.fail(error, vehicle)
+    for number, vehicle, manager in asked:
+        try:
+            manager.answer(vehicle.observation.frame)
+            answers[number] = Answer(manager.control, manager.requested, manager.manual)
+        except AgentError as error:  # noqa: PERF203 - once a vehicle
+            episode.fail(error, vehicle)
+    return answers
+
+
+def _driven(vehicle: VehicleUnderTest, wall_s: float) -> Driven:
+    """Return what came of a vehicle's drive, which is over."""
+    assert vehicle.outcome is not None, "a drive ends with an outcome"
+    return Driven(vehicle.outcome, vehicle.history, wall_s, vehicle.first_frame, vehicle.bug, vehicle.agent_error)

@@ -1,4 +1,4 @@
-"""One run: a fresh world, the vehicle at the beginning of its route, the drive, and the draft of its folder."""
+"""One run: a fresh world, its vehicles on the route, the drive, and the draft of its folder."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from basu.running.agent_drive import AgentDrive
 from basu.running.drive import DriveDone, Driven
 from basu.running.preparation import agents_fault, new_agents, sumo_folder
 from basu.running.run_folder import import_pictures, run_config, write_run_folder
+from basu.running.shuttle_documents import known_as, shuttle_facts, write_shuttles
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from basu.episode import Episode, Towns
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from basu.options.run import RunOptions
     from basu.routing.route_file import RoutePoint
     from basu.running.preparation import Plan, RequestedRun
+    from basu.running.shuttles import Shuttle
     from basu.simulator import Simulator
 
 
@@ -46,7 +49,7 @@ class Session:
     pictures: bool = True  # whether each run gets its picture and its report
 
 
-def run_one(session: Session, agents: AgentsManager, job: RequestedRun, *, output: Path, name: str) -> DriveDone:
+def run_one(session: Session, shuttles: Sequence[Shuttle], job: RequestedRun, *, output: Path, name: str) -> DriveDone:
     """Make one run and write its folder as a draft for ``name`` in ``output``.
 
     Raises:
@@ -54,60 +57,60 @@ def run_one(session: Session, agents: AgentsManager, job: RequestedRun, *, outpu
         SimulatorError: the simulator failed before it began.
     """
     started = datetime.now(timezone.utc)
-    points = agents.own_route()
-    spec = _spec(session, agents, job, points)
-    one = AgentDrive(
-        session.simulator,
-        session.towns,
-        spec,
-        agents,
-        session.plan.sensors,
-        session.options,
-        agent=session.plan.loaded.name,
-        name=name,
-        by_agent=session.plan.loaded.file is not None,
-        quiet=session.quiet,
-    )
+    first = shuttles[0]
+    points = first.agents.own_route()
+    spec = _spec(session, first.agents, job, points)
+    one = AgentDrive(session.simulator, session.towns, spec, shuttles, session.options, name=name, quiet=session.quiet)
     episode = one.episode
     ground = _laid(episode, is_planned_by_agent=points is not None)
     if session.pictures:
         import_pictures()
     draft = make_draft(output, name)
     try:
+        for shuttle in shuttles[1:]:
+            (draft / shuttle.folder).mkdir()
         driven = one.play(job.seed, draft)
     except BaseException:  # nothing was driven: no folder is kept
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    config = run_config(
-        session.options,
-        session.scoring,
-        session.plan.loaded,
-        agents.config,
-        ground.description,
-        own_simulator=session.simulator.own,
-        started=started,
-        seed=job.seed,
-        traffic=episode.traffic,
-        log=one.log,
-        access=agents.access,
-        ignored=agents.ignored,
-    )
-    met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
-    try:
-        result = write_run_folder(
-            draft,
-            driven,
+    results = []
+    for shuttle, drive in zip(shuttles, driven, strict=True):
+        config = run_config(
+            session.options,
             session.scoring,
-            ground.town.lanes,
-            config,
-            met,
-            own,
-            pictures=session.pictures,
+            shuttle.loaded,
+            shuttle.agents.config,
+            ground.description,
+            typed=shuttle.typed,
+            own_simulator=session.simulator.own,
+            started=started,
+            seed=job.seed,
+            traffic=episode.traffic,
+            log=one.log,
+            access=shuttle.agents.access,
+            ignored=shuttle.agents.ignored,
+            shuttle=shuttle_facts(shuttle, shuttles),
         )
-    except UserError as error:
-        raise UserError(f"{error}; {_rest_of(draft)}") from error
-    return DriveDone(draft, result, driven.bug)
+        met = results_of(episode.playing, drive.history, drive.outcome) if shuttle is first else ()
+        try:
+            result = write_run_folder(
+                draft / shuttle.folder,
+                drive,
+                session.scoring,
+                ground.town.lanes,
+                config,
+                met,
+                own,
+                pictures=session.pictures,
+            )
+        except UserError as error:
+            raise UserError(f"{error}; {_rest_of(draft)}") from error
+        results.append(result)
+    if len(shuttles) > 1:
+        write_shuttles(draft, shuttles, results, known_as(episode.vehicles))
+    bug = next((drive.bug for drive in driven if drive.bug is not None), None)
+    return DriveDone(draft, results[0], bug, beside=tuple(results[1:]))
 
 
 def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
@@ -125,19 +128,26 @@ def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
         raise
 
 
-def next_agents(session: Session, job: RequestedRun) -> AgentsManager:
-    """Return the agent of a further run, under the conditions of the first: its ``config()`` cannot change them.
+def next_shuttles(session: Session, job: RequestedRun) -> tuple[Shuttle, ...]:
+    """Return the shuttles of a further run, under the conditions of the first: no ``config()`` can change them.
 
     Raises:
-        UserError, AgentError: the agent cannot be made.
+        UserError, AgentError: an agent cannot be made.
     """
-    agents = new_agents(session.plan.loaded, session.options, job.seed, session.options.routes)
-    agents.config = session.plan.agents.config
-    return agents
+    found = []
+    for planned in session.plan.shuttles:
+        is_first = planned.number == 1
+        routes = session.options.routes if is_first else None
+        agents = new_agents(
+            planned.loaded, session.options, job.seed, routes, has_conditions=is_first, shuttle=planned.number
+        )
+        agents.config = planned.agents.config
+        found.append(planned._replace(agents=agents))
+    return tuple(found)
 
 
 def run_counted(
-    session: Session, agents: AgentsManager | None, job: RequestedRun, *, output: Path, name: str
+    session: Session, shuttles: Sequence[Shuttle] | None, job: RequestedRun, *, output: Path, name: str
 ) -> DriveDone:
     """Make one run of a series as `run_one` does; an agent that fails before its drive has had its run.
 
@@ -147,8 +157,8 @@ def run_counted(
     """
     try:
         with agents_fault(session.plan.loaded):
-            agents = agents or next_agents(session, job)
-        return run_one(session, agents, job, output=output, name=name)
+            shuttles = shuttles or next_shuttles(session, job)
+        return run_one(session, shuttles, job, output=output, name=name)
     except AgentError as error:
         outcome = outcome_of(error, session.simulator.why_gone)
         driven = Driven(outcome, None, 0.0, None, None, error)
@@ -159,6 +169,7 @@ def run_counted(
         plan.loaded,
         plan.agents.config,
         job.description,
+        typed=options.agent,
         own_simulator=session.simulator.own,
         started=datetime.now(timezone.utc),
         seed=job.seed,

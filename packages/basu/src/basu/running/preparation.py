@@ -16,6 +16,7 @@ from basu import plugins
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
+from basu.episode import seed_of
 from basu.episode.world import weather_called
 from basu.errors import AgentCrashedError, UserError
 from basu.files import PACKAGE_FOLDER, find, places
@@ -23,6 +24,7 @@ from basu.managers.agents_manager import AgentsManager
 from basu.managers.person import person_for
 from basu.options.sumo import SUMO_OFF
 from basu.routing.route_file import OWN_ROUTE, RouteDescription, read_routes, subset
+from basu.running.shuttles import SensorSet, Shuttle, beside
 from basu.scenarios.route_scenarios import scenarios_on
 
 if TYPE_CHECKING:
@@ -34,13 +36,6 @@ if TYPE_CHECKING:
     from basu.options.drive import DriveOptions
     from basu.options.run import RunOptions
     from basu.scenarios.playable import Playable
-
-
-class SensorSet(NamedTuple):
-    """The sensors of a run, and their origin in words."""
-
-    specs: tuple[SensorSpec, ...]
-    source: str
 
 
 class RequestedRun(NamedTuple):
@@ -58,10 +53,23 @@ class RequestedRun(NamedTuple):
 class Plan:
     """What is to be run."""
 
-    loaded: FoundAgent
-    agents: AgentsManager  # for the first run; each further run makes its own
-    sensors: SensorSet
+    shuttles: tuple[Shuttle, ...]  # with agents for the first run; each further run makes its own
     jobs: tuple[RequestedRun, ...]
+
+    @property
+    def loaded(self) -> FoundAgent:
+        """The agent of the first shuttle, mostly the only one."""
+        return self.shuttles[0].loaded
+
+    @property
+    def agents(self) -> AgentsManager:
+        """The manager of the agent of the first shuttle in the first run."""
+        return self.shuttles[0].agents
+
+    @property
+    def sensors(self) -> SensorSet:
+        """The sensors of the first shuttle."""
+        return self.shuttles[0].sensors
 
 
 @contextlib.contextmanager
@@ -88,15 +96,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = given or find_agent(
-        options.agent,
-        options.agent_config,
-        in_process=options.in_process,
-        memory_gb=options.agent_memory_gb,
-        writes=options.agent_writes,
-        closed_ports=closed_ports(options.host, options.port, is_open=options.open),
-        output=None if options.open else options.output,
-    )
+    loaded = given or _found(options, options.agent, 1)
     with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
         agents = new_agents(loaded, options, options.seed, options.routes, has_conditions=has_conditions)
         sensors = sensor_set(agents, loaded)
@@ -126,7 +126,50 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
             (description, repetition) for description in routes for repetition in range(options.repetitions)
         )
     ]
-    return Plan(loaded, agents, sensors, tuple(jobs))
+    first = Shuttle(options.agent, loaded, agents, sensors)
+    return Plan((first, *_besides(options, first, given)), tuple(jobs))
+
+
+def _found(options: RunOptions, agent: str, shuttle: int) -> FoundAgent:
+    """Return an agent by its name or file, in a process of its own for each shuttle.
+
+    Raises:
+        UserError: there is none.
+    """
+    return find_agent(
+        agent,
+        options.agent_config,
+        in_process=options.in_process,
+        memory_gb=options.agent_memory_gb,
+        writes=options.agent_writes,
+        closed_ports=closed_ports(options.host, options.port, is_open=options.open),
+        output=None if options.open else options.output,
+        shuttle=shuttle,
+    )
+
+
+def _besides(options: RunOptions, first: Shuttle, given: FoundAgent | None) -> list[Shuttle]:
+    """Return the shuttles beside the first, in the order in which they stand on the route.
+
+    Raises:
+        UserError, AgentError: an agent cannot be had, or two shuttles need the same person.
+    """
+    found: list[Shuttle] = []
+    for number, each in enumerate(options.besides, 2):
+        typed = each.agent or options.agent
+        loaded = given if given is not None and each.agent is None else _found(options, typed, number)
+        if loaded.is_human:
+            raise UserError(
+                f"'{typed}' drives by a person's keys, and a person drives the first shuttle only; give the agent of "
+                f"the shuttle '{each.role}' with --beside AGENT"
+            )
+        with agents_fault(loaded):
+            agents = new_agents(loaded, options, options.seed, has_conditions=False, shuttle=number)
+            agents.config = beside(first.agents.config, agents.config)
+            sensors = sensor_set(agents, loaded)
+        start_m = options.headway_m * (number - 1)
+        found.append(Shuttle(typed, loaded, agents, sensors, number, each.role, start_m))
+    return found
 
 
 def _route_file(config: AgentConfig, options: RunOptions, loaded: FoundAgent) -> tuple[Path, bool]:
@@ -151,16 +194,25 @@ def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Play
 
 
 def new_agents(
-    loaded: FoundAgent, options: DriveOptions, seed: int, routes: str | None = None, *, has_conditions: bool = True
+    loaded: FoundAgent,
+    options: DriveOptions,
+    seed: int,
+    routes: str | None = None,
+    *,
+    has_conditions: bool = True,
+    shuttle: int = 1,
 ) -> AgentsManager:
     """Return a fresh agent, with everything random in Python begun anew.
 
     ``routes`` is the route file of the command line. Without ``has_conditions`` the wishes of the agent for route,
     vehicle, weather and traffic are ignored.
+
+    ``seed`` is the run's; each ``shuttle`` has one of its own by it.
     """
+    seed = seed_of(seed, shuttle)
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
-    person = person_for(options, by_hand=loaded.is_human)
+    person = person_for(options, by_hand=loaded.is_human) if shuttle == 1 else None
     agents = AgentsManager(
         loaded,
         step_limit_s=options.step_limit_s,

@@ -47,6 +47,7 @@ def run_config(
     wishes: AgentConfig,
     description: RouteDescription,
     *,
+    typed: str,
     own_simulator: bool,
     started: datetime,
     seed: int,
@@ -54,16 +55,21 @@ def run_config(
     log: str | None,
     access: Mapping[str, Any],
     ignored: str = "",
+    shuttle: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return ``config.json``: the options that repeat this one run, and what they came to.
 
+    ``typed`` is the agent as the user named it.
+
     ``ignored`` is a sentence about wishes of the agent that the benchmark ignored.
+
+    ``shuttle`` says which vehicle of a run with several this is.
     """
     again = options_again(options, description, seed)
     facts = drive_facts(
         options,
         loaded,
-        options.agent,
+        typed,
         wishes,
         description,
         weather=weather_name(options, wishes, description),
@@ -76,7 +82,7 @@ def run_config(
         ignored=ignored,
     )
     document = config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description))
-    return {**document, **facts}
+    return {**document, **facts, **({} if shuttle is None else {"shuttle": dict(shuttle)})}
 
 
 def drive_facts(

@@ -13,21 +13,21 @@ from basu.jobs.job import After, JobOutcome, PlayerSpec
 from basu.metrics.registry import user_metrics
 from basu.outcome import Status
 from basu.running.drive import not_begun
-from basu.running.one_run import Session, next_agents, run_counted, run_one
+from basu.running.one_run import Session, next_shuttles, run_counted, run_one
 from basu.running.preparation import prepare
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from basu.jobs.job import Play
-    from basu.managers.agents_manager import AgentsManager
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
     from basu.running.drive import DriveDone
     from basu.running.preparation import Plan
     from basu.running.preparation import RequestedRun as RunJob
+    from basu.running.shuttles import Shuttle
     from basu.simulator import Simulator
 
 ENDING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
@@ -75,15 +75,15 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
         wanted = {job.description.town for job in plan.jobs}
         check_towns(towns.names(wanted), wanted)
         session = Session(options, scoring, plan, simulator, towns, quiet=here is None or here.quiet)
-        first = [] if here is None else [plan.agents]
+        first = [] if here is None else [plan.shuttles]
 
         def play(data: RunJobData) -> JobOutcome:
             job = plan.jobs[data.number]
-            # the agent that was made to be asked for its wishes drives the first run; it was made with its seed
-            agents = first.pop() if first and job.seed == options.seed else None
+            # the agents that were made to be asked for their wishes drive the first run; they were made with its seed
+            shuttles = first.pop() if first and job.seed == options.seed else None
             first.clear()
             try:
-                done = _driven(session, agents, job, data)
+                done = _driven(session, shuttles, job, data)
             except (UserError, AgentError, SimulatorError) as error:
                 if here is not None:
                     raise
@@ -91,14 +91,14 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
                 return JobOutcome(
                     not_begun(outcome_of(error, simulator.why_gone)), After.AGAIN if again else After.GO_ON
                 )
-            ends = done.result.outcome.status in ENDING
+            ends = any(result.outcome.status in ENDING for result in done.results)
             return JobOutcome(done.to_send() if here is None else done, After.FRESH if ends else After.GO_ON)
 
         yield play
 
 
-def _driven(session: Session, agents: AgentsManager | None, job: RunJob, data: RunJobData) -> DriveDone:
+def _driven(session: Session, shuttles: Sequence[Shuttle] | None, job: RunJob, data: RunJobData) -> DriveDone:
     """Drive one run; in a series, an agent that fails before its drive has had its run."""
     if session.options.series is not None:
-        return run_counted(session, agents, job, output=data.output, name=data.name)
-    return run_one(session, agents or next_agents(session, job), job, output=data.output, name=data.name)
+        return run_counted(session, shuttles, job, output=data.output, name=data.name)
+    return run_one(session, shuttles or next_shuttles(session, job), job, output=data.output, name=data.name)

@@ -13,6 +13,7 @@ from basu.jobs.playing import play_jobs
 from basu.outcome import Status
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, read_run, run_name
+from basu.output.report.shuttles import contact_lines, read_shuttles, shuttle_line
 from basu.running.batch import Batch
 from basu.running.exit_code import exit_code
 from basu.running.folder_lock import locked
@@ -126,7 +127,7 @@ def runs(
             if done.folder is not None:
                 point_latest(done.folder, options.output)
             yield done
-            if not is_parallel and done.result.outcome.status in BREAKING_OFF:
+            if not is_parallel and any(result.outcome.status in BREAKING_OFF for result in done.results):
                 return
 
 
@@ -149,7 +150,13 @@ def show(done: DriveDone, options: RunOptions) -> int:
     if done.folder is None:
         print(f"basu: {result.outcome.message}")
         return int(result.outcome.status.fault.value)
-    print(table(result))
+    document = read_shuttles(done.folder)
+    for number, each in enumerate(done.results):
+        if document is not None:
+            print(shuttle_line(document, number))
+        print(table(each))
+    if document is not None:
+        print("\n".join(contact_lines(document)))
     if options.record:
         recording = read_run(done.folder).config["recording"]
         print(f"recording         {recording['file']} ({recording['where']})")
@@ -159,5 +166,7 @@ def show(done: DriveDone, options: RunOptions) -> int:
         raise done.bug
     if done.bug is not None:
         print(done.bug)
-    scores = None if result.scores is None else result.scores._asdict()
-    return exit_code(result.outcome.status, scores, options.require)
+    return max(
+        exit_code(each.outcome.status, None if each.scores is None else each.scores._asdict(), options.require)
+        for each in done.results
+    )

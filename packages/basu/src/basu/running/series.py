@@ -30,7 +30,7 @@ from basu.output.report.documents import (
     write_json,
 )
 from basu.output.report.series_document import row, series_table, totals
-from basu.settings.option import fields_of, gone_from, to_json
+from basu.settings.option import fields_of, gone_from, is_told, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -125,7 +125,7 @@ def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[st
         **{
             field.flag: _condition(getattr(options, field.name))
             for field in fields_of(type(options))
-            if field.option.repeats and field.name not in RESOLVED
+            if field.option.repeats and field.name not in RESOLVED and is_told(field, options)
         },
         "the agent": options.agent,
         "the agent's file": None if agent_file is None else _digest(agent_file.read_bytes()),

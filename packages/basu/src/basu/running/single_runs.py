@@ -59,7 +59,7 @@ class SingleRuns(Batch):
             UserError: the disk does not let us.
         """
         published = super().publish(done)
-        if published.folder is not None and counts(published.result):
+        if published.folder is not None and all(map(counts, published.results)):
             self._document["done"][str(published.number)] = published.folder.name
             self.write()
         return published

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import basu
 from basu.errors import UserError
 from basu.files import PACKAGE_FOLDER, read_json
-from basu.settings.option import Layer, Settings, fields_of, to_json
+from basu.settings.option import Layer, Settings, fields_of, is_told, to_json
 
 CONFIG_VERSION = 2
 RUN, SCENARIO_RUN = "run", "scenario run"
@@ -36,14 +36,14 @@ def config_document(
 ) -> dict[str, Any]:
     """The document without what a command adds as information. ``files`` decide over the run's outcome."""
     plain = to_json(options)
-    own = {field.name: field.option.repeats for field in fields_of(type(options))}
+    told = [field for field in fields_of(type(options)) if is_told(field, options)]
     return {
         "schema_version": CONFIG_VERSION,
         "kind": kind,
         "command": list(command),
-        "options": {name: value for name, value in plain.items() if own[name]},
+        "options": {field.name: plain[field.name] for field in told if field.option.repeats},
         **({} if scoring is None else {"scoring": to_json(scoring)}),
-        "session": {name: value for name, value in plain.items() if not own[name]},
+        "session": {field.name: plain[field.name] for field in told if not field.option.repeats},
         "working_folder": str(Path.cwd()),
         "files": [{"path": _shown(path), "sha256": _digest(path)} for path in dict.fromkeys(files)],
         "versions": {

@@ -37,6 +37,7 @@ class Option:
     advice: str = ""  # ends a complaint about a value of the wrong type
     rival: str | None = None  # options of one rivalry exclude each other
     is_file: bool = False  # its values name files, maybe with ":Class" behind them
+    is_rare: bool = False  # it stands in documents where it differs from its default, and else is left out
     repeats: bool = True  # it belongs to what repeats a run; False: where and how long it is run, and what is shown
 
 
@@ -109,6 +110,11 @@ class Layer(NamedTuple):
 def gone_from(model: type) -> dict[str, str]:
     """Return the options that earlier versions of a model had, with the sentence about what replaces each."""
     return {name: sentence for base in model.__mro__ for name, sentence in vars(base).get("GONE", {}).items()}
+
+
+def is_told(field: Field, options: Settings) -> bool:
+    """Return whether documents have the value of an option."""
+    return not field.option.is_rare or getattr(options, field.name) != field.default
 
 
 _FIELDS: dict[type, tuple[Field, ...]] = {}

@@ -101,8 +101,9 @@ def test_a_control_that_is_none_is_the_agents_failure(tmp_path: Path, answer: st
     remote = cheat(tmp_path, text)
     remote.own_route()
     remote._hears = True
+    remote.ask(1, {})
     with pytest.raises(AgentInvalidControlError, match=r"no control: int too large"):
-        remote.step(1, {})
+        remote.answer()
 
 
 NEEDS_FILES = pytest.mark.skipif(confinement.landlock_abi() == 0, reason="this kernel has no Landlock (Linux 5.13)")

@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
         relay.watch(sys.stdin.fileno(), order)
     else:
         ports = relay.open_gate(Track(arguments.track), arguments.vehicle, ())
-        relay.add_sensors(arguments.sensor)
+        relay.add_sensors(arguments.vehicle, arguments.sensor)
         _say(f"linden: gate ready, rpc port {ports.rpc}, streaming port {ports.streaming}")
     try:
         relay.run()

@@ -4,12 +4,13 @@
 
     {"open": {"vehicle": 24, "track": "objects", "known": [3, 4], "agent": 71}}
                                                    {"gate": {"rpc": 40001, "streaming": 40002}}
-    {"sensors": [25, 26]}                          {"gate": {}}
-    {"see": {"frame": 1200, "ids": [31, 32]}}
-    {"close": {}}                                  {"gate": {"refused": {"tick_cue": 1}}}
+    {"sensors": {"vehicle": 24, "ids": [25, 26]}}  {"gate": {}}
+    {"see": {"vehicle": 24, "frame": 1200, "ids": [31, 32]}}
+    {"close": {"vehicle": 24}}                     {"gate": {"refused": {"tick_cue": 1}}}
 
-A gate is opened for one drive of one agent. Opening another closes the one before, with all its connections. It closes
-connections of other processes than ``agent`` and all that it started. Without ``agent`` all processes may connect.
+A gate is opened for one drive of one vehicle. Opening another for this vehicle closes the one before, with all its
+connections. A gate closes connections of other processes than ``agent`` and all that it started. Without ``agent`` all
+processes may connect.
 """
 
 import json
@@ -36,14 +37,14 @@ class GateHost(Protocol):
     def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> GatePorts:
         """Listen for one agent; ``agent`` is its process."""
 
-    def add_sensors(self, ids: Iterable[int]) -> None:
-        """Let the agent hear its sensors."""
+    def add_sensors(self, vehicle_id: int, ids: Iterable[int]) -> None:
+        """Let the agent of a vehicle hear its sensors."""
 
-    def see(self, frame: int, ids: Iterable[int]) -> None:
-        """Say what the agent sees of others in a frame."""
+    def see(self, vehicle_id: int, frame: int, ids: Iterable[int]) -> None:
+        """Say what the agent of a vehicle sees of others in a frame."""
 
-    def close_gate(self) -> Mapping[str, int]:
-        """Close the gate with its connections, and return how often each function was refused."""
+    def close_gate(self, vehicle_id: int) -> Mapping[str, int]:
+        """Close the gate of a vehicle with its connections, and return how often each function was refused."""
 
 
 class Control:
@@ -73,20 +74,18 @@ class Control:
 
     def _carry_out(self, message: dict[str, Any]) -> Mapping[str, Any] | None:
         ((name, value),) = message.items()
+        vehicle_id = int(value["vehicle"])
         if name == "see":
-            self._host.see(int(value["frame"]), map(int, value["ids"]))
+            self._host.see(vehicle_id, int(value["frame"]), map(int, value["ids"]))
             return None
         if name == "open":
             agent = value.get("agent")
             return self._host.open_gate(
-                Track(value["track"]),
-                int(value["vehicle"]),
-                map(int, value["known"]),
-                None if agent is None else int(agent),
+                Track(value["track"]), vehicle_id, map(int, value["known"]), None if agent is None else int(agent)
             )._asdict()
         if name == "sensors":
-            self._host.add_sensors(map(int, value))
+            self._host.add_sensors(vehicle_id, map(int, value["ids"]))
             return {}
         if name == "close":
-            return {"refused": dict(self._host.close_gate())}
+            return {"refused": dict(self._host.close_gate(vehicle_id))}
         raise ValueError(f"there is no order {name!r}")

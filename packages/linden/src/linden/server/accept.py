@@ -69,7 +69,6 @@ class Acceptor:
         self._silent: dict[type[Peer], dict[Peer, float]] = {RpcPeer: {}, StreamPeer: {}}  # when each came, in order
         self._closed_until_s: float | None = None
         self._clock = clock
-        self._gated: Ports | None = None
         self.owner: int | None = None
         """The one process with connections that pass no gate; None: all processes."""
         self._open()
@@ -104,7 +103,6 @@ class Acceptor:
 
     def listen(self, ports: Ports, gate: Gate) -> None:
         """Accept connections of an agent as well, on ports of its own."""
-        self._gated = ports
         for listener, kind in ((ports.rpc, RpcPeer), (ports.streaming, StreamPeer)):
             self._selector.register(
                 listener,
@@ -112,13 +110,11 @@ class Acceptor:
                 lambda _, socket_=listener, kind=kind: self._accept(socket_, kind, gate),
             )
 
-    def stop_listening(self) -> None:
-        """Accept no more connections of an agent."""
-        if self._gated is not None:
-            self._selector.unregister(self._gated.rpc)
-            self._selector.unregister(self._gated.streaming)
-            self._gated.close()
-            self._gated = None
+    def stop_listening(self, ports: Ports) -> None:
+        """Accept no more connections of an agent, and close its ports."""
+        self._selector.unregister(ports.rpc)
+        self._selector.unregister(ports.streaming)
+        ports.close()
 
     def _open(self) -> None:
         for listener, kind in ((self._ports.rpc, RpcPeer), (self._ports.streaming, StreamPeer)):

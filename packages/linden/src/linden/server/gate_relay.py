@@ -19,7 +19,7 @@ from linden.errors import ProtocolError
 from linden.gate.session import Gate
 from linden.protocol.wire.answers import Call, call_of
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Subscription, size_prefix
-from linden.server.one_gate import OneGate
+from linden.server.gate_keeper import GateKeeper
 from linden.server.outgoing import Outgoing
 from linden.server.owner import admits
 from linden.server.ports import Ports
@@ -166,15 +166,14 @@ class _Stream(_Link):
             self.agent.outgoing.send(size_prefix(len(payload)), payload)
 
 
-class Relay(OneGate):
-    """Serves one gate at a time before the server at an address."""
+class Relay(GateKeeper):
+    """Serves gates before the server at an address."""
 
     def __init__(self, host: str, port: int) -> None:
         """Name the server; it is connected to when an agent's client comes."""
         super().__init__()
         self._host, self._port = host, port
         self._selector = selectors.DefaultSelector()
-        self._ports: Ports | None = None
         self._links: dict[_Link, None] = {}  # an ordered set
         self._stopping = False
 
@@ -189,31 +188,30 @@ class Relay(OneGate):
         while not self._stopping:
             for key, events in self._selector.select():
                 key.data(events)
-        self.close_gate()
+        self.close_all()
 
     def stop(self) -> None:
         """End :meth:`run` after the present event."""
         self._stopping = True
 
-    # -- the gate
+    # -- gates
 
     def _listen(self, ports: Ports, gate: Gate) -> None:
-        self._ports = ports
         self._selector.register(ports.rpc, _READ, lambda _: self._accept(ports.rpc, gate, self._calls_of))
         self._selector.register(ports.streaming, _READ, lambda _: self._accept(ports.streaming, gate, self._stream_of))
 
-    def _send_held(self) -> None:
+    def _send_held(self, gate: Gate) -> None:
         for link in tuple(self._links):
-            self._guarded(link, link.seen)
+            if link.gate is gate:
+                self._guarded(link, link.seen)
 
-    def _hang_up(self) -> None:
+    def _hang_up(self, gate: Gate, ports: Ports) -> None:
         for link in tuple(self._links):
-            self._close(link)
-        if self._ports is not None:
-            self._selector.unregister(self._ports.rpc)
-            self._selector.unregister(self._ports.streaming)
-            self._ports.close()
-            self._ports = None
+            if link.gate is gate:
+                self._close(link)
+        self._selector.unregister(ports.rpc)
+        self._selector.unregister(ports.streaming)
+        ports.close()
 
     # -- connections
 

@@ -1,17 +1,17 @@
-"""`Gates`: the gate of this server, with the connections of its agent."""
+"""`Gates`: the gates of this server, with the connections of their agents."""
 
 from collections.abc import Callable
 
 from linden.gate.session import Gate
 from linden.server.accept import Acceptor
-from linden.server.one_gate import OneGate
+from linden.server.gate_keeper import GateKeeper
 from linden.server.peers import Peer, StreamPeer
 from linden.server.ports import Ports
 from linden.server.subscribers import Subscribers
 
 
-class Gates(OneGate):
-    """Opens a gate for one agent after the other, and knows the agent's connections."""
+class Gates(GateKeeper):
+    """Opens gates for agents, and knows the agents' connections."""
 
     def __init__(
         self,
@@ -37,12 +37,13 @@ class Gates(OneGate):
     def _listen(self, ports: Ports, gate: Gate) -> None:
         self._acceptor.listen(ports, gate)
 
-    def _send_held(self) -> None:
+    def _send_held(self, gate: Gate) -> None:
         for peer in tuple(self._peers):
-            if isinstance(peer, StreamPeer) and peer.held is not None:
+            if isinstance(peer, StreamPeer) and peer.gate is gate and peer.held is not None:
                 self._subscribers.send(peer, peer.held, self._clock(), may_drop=False)
 
-    def _hang_up(self) -> None:
-        self._acceptor.stop_listening()
+    def _hang_up(self, gate: Gate, ports: Ports) -> None:
+        self._acceptor.stop_listening(ports)
         for peer in tuple(self._peers):
-            self._close(peer)
+            if peer.gate is gate:
+                self._close(peer)

@@ -105,6 +105,7 @@ class AgentProcess:
         self._memory = bounds.memory
         self._look_again_s = 0.0
         self._number = 0
+        self._begin_limit_s = START_LIMIT_S  # of the call that was sent last
         self._is_pending = False
         self._own_kill = False
         self.confinement: tuple[str, ...] | None = None  # the parts that hold here; None until it has said so
@@ -134,17 +135,36 @@ class AgentProcess:
             OverLimitError: the agent's part took longer; the process was killed.
             CallError: the operation raised.
         """
+        self.send(operation, argument, begin_limit_s=begin_limit_s)
+        return self.answer(limit_s=limit_s)
+
+    def send(self, operation: str, argument: Any, *, begin_limit_s: float = START_LIMIT_S) -> None:  # noqa: ANN401
+        """Send a call. ``answer`` waits for its result; meanwhile other processes can be sent their calls.
+
+        Raises:
+            Death: the process is gone, or takes no call.
+        """
         if self._process.poll() is not None:
             raise self._dead()
         if operation == "make":
             self._begin_run()
-        begin_limit_s = PENDING_S if self._is_pending else begin_limit_s
+        self._begin_limit_s = PENDING_S if self._is_pending else begin_limit_s
         self._number += 1
         self._is_pending = True
         try:
-            if not self._channel.send((self._number, operation, argument), time.monotonic() + begin_limit_s):
-                raise self._hung(begin_limit_s)
-            return self._awaited(begin_limit_s, limit_s)
+            if not self._channel.send((self._number, operation, argument), time.monotonic() + self._begin_limit_s):
+                raise self._hung(self._begin_limit_s)
+        except (ChannelClosedError, LookupError, TypeError, ValueError) as error:
+            raise self._dead() from error
+
+    def answer(self, *, limit_s: float) -> Any:  # noqa: ANN401 - as the operation has it
+        """Return what the call that was sent last returns; its limits begin no earlier than now.
+
+        Raises:
+            Death, OverLimitError, CallError: as ``call``.
+        """
+        try:
+            return self._awaited(self._begin_limit_s, limit_s)
         except (ChannelClosedError, LookupError, TypeError, ValueError) as error:
             raise self._dead() from error
 
@@ -157,7 +177,7 @@ class AgentProcess:
         """
         deadline_s, has_begun = time.monotonic() + begin_limit_s, False
         while True:
-            answer = self._answer(deadline_s)
+            answer = self._message(deadline_s)
             if answer is None:
                 if has_begun:
                     self.kill()
@@ -203,8 +223,8 @@ class AgentProcess:
         with contextlib.suppress(OSError):
             self._control.send(b"n")
 
-    def _answer(self, deadline_s: float) -> list[Any] | None:
-        """The next answer, None after the deadline.
+    def _message(self, deadline_s: float) -> list[Any] | None:
+        """The next message, None after the deadline.
 
         Raises:
             Death: the process ended, or used too much memory.

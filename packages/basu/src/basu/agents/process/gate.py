@@ -1,4 +1,4 @@
-"""The benchmark's side of the gate: opens it for a drive, says what the agent sees, and learns what was refused.
+"""The benchmark's side of gates: opens one for a drive, says what its agent sees, and learns what was refused.
 
 A server of our own has gates in itself. Before any other simulator stands a relay, the process ``linden gate``. Both
 take the same orders, lines of JSON (docs/reference/gate.md).
@@ -47,62 +47,83 @@ class Keeper(Protocol):
         """Return the next line of its answers; empty where it has ended."""
 
 
-class Gate:
-    """Gates before one simulator, one at a time."""
+class Gates:
+    """The gates before one simulator, one for each vehicle that an agent drives."""
 
     def __init__(self, keeper: Keeper) -> None:
         """``keeper`` has the gates."""
         self._keeper = keeper
 
-    def open(self, track: str, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> tuple[str, int]:
-        """Open a gate for the driver of a vehicle, and return its address; the one before is closed.
+    def open(self, track: str, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> Gate:
+        """Open a gate for the driver of a vehicle; one that is open for this vehicle is closed.
 
         ``known`` are actors that it sees in each frame in the track ``objects``. The gate lets in the process ``agent``
         and all that it started; None: all processes.
 
         Raises:
-            SimulatorError: the gate has ended.
+            SimulatorError: the process of the gates has ended.
         """
-        ports = self._asked(open={"track": track, "vehicle": vehicle_id, "known": list(known), "agent": agent})
-        return HOST, int(ports["rpc"])
+        ports = self.asked("open", vehicle_id, track=track, known=list(known), agent=agent)
+        return Gate(self, vehicle_id, (HOST, int(ports["rpc"])))
 
-    def add_sensors(self, ids: Iterable[int]) -> None:
-        """Let the agent hear sensors that were spawned for it.
+    def asked(self, name: str, vehicle_id: int, **values: Any) -> dict[str, Any]:  # noqa: ANN401 - as JSON has it
+        """Send an order about the gate of a vehicle, and return its answer.
 
         Raises:
-            SimulatorError: the gate has ended.
+            SimulatorError: the process of the gates has ended.
         """
-        self._asked(sensors=list(ids))
-
-    def see(self, frame: int, ids: Iterable[int]) -> None:
-        """Say which actors the agent sees in a frame, in the track ``objects``; the gate holds the frame until then.
-
-        Raises:
-            SimulatorError: the gate has ended.
-        """
-        self._order(see={"frame": frame, "ids": list(ids)})
-
-    def close(self) -> dict[str, int]:
-        """Close the gate with all connections of the agent; how often each function was refused."""
-        try:
-            return dict(self._asked(close={})["refused"])
-        except SimulatorError:  # it has ended, and with it all connections
-            return {}
-
-    def _asked(self, **order: Any) -> dict[str, Any]:  # noqa: ANN401 - as JSON has it
-        """Send an order and return its answer."""
-        self._order(**order)
+        self.order(name, vehicle_id, **values)
         line = self._keeper.answer()
         if not line:
             raise SimulatorError("the gate between agent and simulator has ended")
         answer: dict[str, Any] = json.loads(line)["gate"]
         return answer
 
-    def _order(self, **order: Any) -> None:  # noqa: ANN401 - as JSON has it
+    def order(self, name: str, vehicle_id: int, **values: Any) -> None:  # noqa: ANN401 - as JSON has it
+        """Send an order that has no answer.
+
+        Raises:
+            SimulatorError: the process of the gates has ended.
+        """
         try:
-            self._keeper.send_order(json.dumps(order) + "\n")
+            self._keeper.send_order(json.dumps({name: {"vehicle": vehicle_id, **values}}) + "\n")
         except OSError as error:
             raise SimulatorError(f"the gate between agent and simulator has ended: {error}") from error
+
+
+class Gate:
+    """The gate of one vehicle's driver. `Gates.open` makes one.
+
+    Attributes:
+        address: host and port that the agent's client connects to.
+    """
+
+    def __init__(self, gates: Gates, vehicle_id: int, address: tuple[str, int]) -> None:
+        """Take up a gate that is open."""
+        self._gates, self._vehicle_id, self.address = gates, vehicle_id, address
+
+    def add_sensors(self, ids: Iterable[int]) -> None:
+        """Let the agent hear sensors that were spawned for it.
+
+        Raises:
+            SimulatorError: the process of the gates has ended.
+        """
+        self._gates.asked("sensors", self._vehicle_id, ids=list(ids))
+
+    def see(self, frame: int, ids: Iterable[int]) -> None:
+        """Say which actors the agent sees in a frame, in the track ``objects``; the gate holds the frame until then.
+
+        Raises:
+            SimulatorError: the process of the gates has ended.
+        """
+        self._gates.order("see", self._vehicle_id, frame=frame, ids=list(ids))
+
+    def close(self) -> dict[str, int]:
+        """Close the gate with all connections of the agent; how often each function was refused."""
+        try:
+            return dict(self._gates.asked("close", self._vehicle_id)["refused"])
+        except SimulatorError:  # it has ended, and with it all connections
+            return {}
 
 
 class Relay:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import hashlib
 import sys
@@ -28,7 +29,7 @@ from basu.errors import (
 from basu.routing.route_file import RoutePoint
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.routing import Route
@@ -56,10 +57,11 @@ class AgentInProcess(NamedTuple):
     wanted: str  # as it was typed
     agent_config: str | None
     bounds: ProcessBounds = ProcessBounds()
+    shuttle: int = 1  # that it drives: the agents of several shuttles have a process each
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
-        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.bounds)
+        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.bounds, self.shuttle)
         kept = _kept.get(key)
         if kept is None or not kept.alive:
             kept = _kept[key] = AgentProcess(self.bounds)
@@ -74,7 +76,7 @@ class AgentInProcess(NamedTuple):
 _enforced: dict[ProcessBounds, tuple[str, ...]] = {}  # the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
-_kept: dict[tuple[str, ProcessBounds], AgentProcess] = {}
+_kept: dict[tuple[str, ProcessBounds, int], AgentProcess] = {}
 
 
 def find_agent(
@@ -86,12 +88,13 @@ def find_agent(
     writes: tuple[str, ...] = (),
     closed_ports: tuple[int, ...] = (),
     output: Path | None = None,
+    shuttle: int = 1,
 ) -> FoundAgent:
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
     ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own;
     it may neither connect to ``closed_ports`` nor listen there. It sees nothing in the folder ``output`` of drives, if
-    all that it needs lies elsewhere.
+    all that it needs lies elsewhere. The agent of each ``shuttle`` of a run, from 1, has a process of its own.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
@@ -106,7 +109,7 @@ def find_agent(
     needed = [*writes, *(str(each) for each in (file, agent_config) if each is not None)]
     hidden = () if output is None or _holds(output, needed) else (str(output.resolve()),)
     agent = AgentInProcess(
-        "", file, "", False, wanted, agent_config, ProcessBounds(memory, writes, closed_ports, hidden)
+        "", file, "", False, wanted, agent_config, ProcessBounds(memory, writes, closed_ports, hidden), shuttle
     )
     try:
         process = agent.process()
@@ -206,17 +209,27 @@ class RemoteAgent:
         if self._process.alive and not self._has_failed:
             self._call("stop_hearing", None, "destroy", self._setup_limit_s)
 
-    def step(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
-        """The control that ``run_step`` answers with, for the frame that the world has reached.
+    def ask(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> None:
+        """Ask for the control for the frame that the world has reached, and do not wait for it.
 
         ``sensor_data`` is not sent: the agent's process has its own.
+
+        Raises:
+            AgentError: its process died.
+        """
+        assert self._hears or not sensor_data, "the SensorsManager of this run lacks its listener"
+        with self._failures("run_step", self._step_limit_s, is_step=True):
+            self._process.send("step", frame, begin_limit_s=self._step_begins_s)
+
+    def answer(self) -> carla.VehicleControl:
+        """Return the control that ``run_step`` answers with, for the frame that was asked for.
 
         Raises:
             AgentError: it failed, took too long, died, or answered with what is no control. So is a sensor or
                 a frame that did not reach its process. The benchmark's own client tells whether the simulator is there.
         """
-        assert self._hears or not sensor_data, "the SensorsManager of this run lacks its listener"
-        answer = self._call("step", frame, "run_step", self._step_limit_s, self._step_begins_s)
+        with self._failures("run_step", self._step_limit_s, is_step=True):
+            answer = self._process.answer(limit_s=self._step_limit_s)
         try:
             *numbers, hand_brake, reverse, manual_gear_shift, gear, manual = answer
             throttle, steer, brake = map(float, numbers)
@@ -257,8 +270,18 @@ class RemoteAgent:
             AgentError: it went wrong.
             UserError: the setup of a driver of BASU's own says that the run is set up wrongly for it.
         """
-        try:
+        with self._failures(method, limit_s):
             return self._process.call(operation, argument, limit_s=limit_s, begin_limit_s=begin_limit_s)
+
+    @contextlib.contextmanager
+    def _failures(self, method: str, limit_s: float, *, is_step: bool = False) -> Iterator[None]:
+        """Turn what goes wrong in a call into the agent's failure.
+
+        Raises:
+            AgentError, UserError: as `_call`.
+        """
+        try:
+            yield
         except OverLimitError:
             raise timed_out(method, self.name, limit_s) from None
         except Death as death:
@@ -267,7 +290,7 @@ class RemoteAgent:
         except CallError as error:
             self._has_failed = True
             sentence = error.sentence[:LONGEST_SENTENCE]
-            if error.kind == SETUP and self._is_ours and operation != "step":
+            if error.kind == SETUP and self._is_ours and not is_step:
                 raise UserError(sentence) from _there(error)
             if error.kind in FAILURES:
                 raise FAILURES[error.kind](sentence) from _there(error)

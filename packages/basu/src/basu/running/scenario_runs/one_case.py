@@ -28,10 +28,11 @@ from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription
 from basu.running.agent_drive import AgentDrive
 from basu.running.drive import DriveDone, Driven
-from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
+from basu.running.preparation import agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
 from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
+from basu.running.shuttles import SensorSet, Shuttle
 from basu.scenarios.cases import cases_of
 from basu.scenarios.tree_picture import draw
 from basu.scenarios.verdict import judge as verdict_of
@@ -193,15 +194,12 @@ def _attempt(
             session.simulator,
             session.towns,
             spec,
-            agents,
-            sensors,
+            [Shuttle(loaded.name, loaded, agents, sensors)],
             options,
-            agent=loaded.name,
             name=f"{plain(loaded.name)}-{plain(playable.case.name)}",
-            by_agent=loaded.file is not None,
             quiet=True,
         )
-        driven = one.play(options.seed, folder)
+        (driven,) = one.play(options.seed, folder)
     except (UserError, AgentError, SimulatorError) as error:
         outcome = outcome_of(error, session.simulator.why_gone)
         agent_error = error if isinstance(error, AgentError) else None

@@ -23,6 +23,7 @@ from basu.output.report.plots.signals import charts, signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
 from basu.output.report.scenarios.page.route_section import card_style, on_the_way
+from basu.output.report.shuttles import links
 from basu.output.report.streets import bounds_of
 from basu.output.report.templates import e, extended, render
 
@@ -60,6 +61,7 @@ def report(run: RunRecord) -> bytes:
         "fault": document["fault"],
         "message": document["message"],
         "answers": answers(result),
+        "shuttles": links(run.config.get("shuttle")),
         "score_card": score_card(result),
         "history": history is not None,
         "samples": "",

@@ -1,0 +1,94 @@
+"""Options of several vehicles under test in one run."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+from basu.conditions import ROLE
+from basu.errors import UserError
+from basu.options.groups import AGENT
+from basu.settings.option import Option, Settings
+
+WITH_ROLE = re.compile(r"([A-Za-z][A-Za-z0-9_-]*)=(.+)")
+
+
+class Beside(NamedTuple):
+    """A further shuttle of a run."""
+
+    role: str
+    agent: str | None  # as the user named it; None: that of the first shuttle
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShuttleOptions(Settings):
+    """How many vehicles a run tests at once, and which agents drive them."""
+
+    shuttles: Annotated[
+        int,
+        Option(
+            help="vehicles under test at once in one world, each with an agent, a record and a judgement of its own",
+            group=AGENT,
+            is_rare=True,
+            metavar="N",
+            least=1,
+            most=8,
+        ),
+    ] = 1
+    beside: Annotated[
+        tuple[str, ...],
+        Option(
+            help="the agent of the next shuttle, in place of AGENT again; may be given several times",
+            group=AGENT,
+            is_rare=True,
+            metavar="[ROLE=]AGENT",
+            is_file=True,
+        ),
+    ] = ()
+    headway_m: Annotated[
+        float,
+        Option(
+            help="along the route from one shuttle to the next at the start",
+            group=AGENT,
+            is_rare=True,
+            flag="--headway",
+            metavar="M",
+            unit="m",
+            above=0.0,
+        ),
+    ] = 100.0
+
+    @property
+    def besides(self) -> tuple[Beside, ...]:
+        """The shuttles beside the first one."""
+        given = [WITH_ROLE.fullmatch(each) for each in self.beside]
+        agents = [each if match is None else match[2] for each, match in zip(self.beside, given, strict=True)]
+        roles = [None if match is None else match[1] for match in given]
+        lacking = max(0, self.shuttles - 1 - len(given))
+        return tuple(
+            Beside(role or f"{ROLE}_{number}", agent)
+            for number, (role, agent) in enumerate(
+                zip([*roles, *[None] * lacking], [*agents, *[None] * lacking], strict=True), 2
+            )
+        )
+
+    def check(self) -> None:
+        """Check that each shuttle has a role and an agent.
+
+        Raises:
+            UserError: there are more agents than shuttles, or two shuttles have one role.
+        """
+        if self.shuttles > 1 and len(self.beside) >= self.shuttles:
+            raise UserError(
+                f"--shuttles {self.shuttles} and {len(self.beside)} agents with --beside do not fit: the first shuttle "
+                f"has the agent of the run, so give --beside {self.shuttles - 1} times at most, or leave out --shuttles"
+            )
+        roles = [ROLE, *(each.role for each in self.besides)]
+        for role in roles:
+            if roles.count(role) > 1:
+                raise UserError(
+                    f"two shuttles have the role '{role}', and each vehicle has a role of its own; name another one "
+                    "with --beside ROLE=AGENT"
+                )
+        super().check()
