@@ -83,5 +83,5 @@ def test_console_and_page_begin_with_them() -> None:
     lines = table(judge(DONE, driven(CALM), meta={"simulated_s": 20.0, "wall_s": 1.0})).splitlines()
     assert [line.split()[0] for line in lines[1:4]] == ["safe", "comfortable", "on"]
     page = report(record(crashing())).decode()
-    assert page.index('<dl class="answers">') < page.index("<h2>")
+    assert page.index('<dl class="in-words">') < page.index("<h2>")
     assert '<dt>Safe?</dt><dd><b class="no">No</b>' in page
