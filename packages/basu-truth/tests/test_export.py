@@ -1,0 +1,128 @@
+"""``basu truth export``: what a staged run shows, counted, and runs that cannot be exported."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from pycocotools.coco import COCO
+
+from basu.cli import main
+from basu_carla_log import read_log
+from basu_carla_log.layouts import Kind
+from basu_truth.truth import SeenObject, read_truth
+from staged_run import AHEAD_M, CAMERA, FRAMES, STEP_S, WALKING_MPS
+
+pytestmark = pytest.mark.slow  # the staged run and its exports
+
+
+def seen(folder: Path, sensor: str, frame: int) -> dict[str, SeenObject]:
+    """Return the actors that a sensor saw: by class, and the cars by their place in the row."""
+    found = [o for o in read_truth(folder).objects if (o.sensor, o.frame, o.is_parked) == (sensor, frame, False)]
+    cars = sorted((o for o in found if o.category == "car"), key=lambda o: o.distance_m)
+    return {o.category: o for o in found if o.category != "car"} | dict(zip(("near", "far"), cars, strict=True))
+
+
+def test_the_first_car_is_whole_and_hides_most_of_the_second(exported: dict[str, Path]) -> None:
+    front = seen(exported["coco"], "FRONT", 2)
+    assert front["near"].visibility == 1.0
+    far = front["far"]
+    assert far.whole == far.visible + far.hidden_by_actors + far.hidden_by_scenery
+    assert far.hidden_by_scenery == 0
+    assert 0.1 < far.visibility < 0.9
+    assert far.rectangle.width < far.whole_rectangle.width
+
+
+def test_boxes_stand_where_the_actors_were_put(exported: dict[str, Path]) -> None:
+    front = seen(exported["coco"], "FRONT", 2)
+    for name in ("near", "far"):
+        ahead_m = front[name].box_in_sensor.x_m + CAMERA["x"]
+        assert ahead_m == pytest.approx(AHEAD_M[name], abs=0.3)  # a box's middle is not its actor's origin
+    assert front["far"].box_in_sensor.y_m == pytest.approx(front["near"].box_in_sensor.y_m + 0.8, abs=1e-3)
+
+
+def test_the_area_of_a_car_seen_alone_falls_with_the_square_of_its_distance(exported: dict[str, Path]) -> None:
+    front = seen(exported["coco"], "FRONT", 2)
+    near, far = front["near"], front["far"]
+    back_m = near.size_m[0] / 2.0  # the side of a car that the camera sees
+    ratio = (far.box_in_sensor.x_m - back_m) ** 2 / (near.box_in_sensor.x_m - back_m) ** 2
+    assert near.whole / far.whole == pytest.approx(ratio, rel=0.15)
+
+
+def test_a_walker_that_is_put_to_its_places_has_the_velocity_of_these_places(exported: dict[str, Path]) -> None:
+    places = [np.array(seen(exported["coco"], "FRONT", n)["pedestrian"].box[:2]) for n in range(1, FRAMES + 1)]
+    steps = np.diff(places, axis=0) / STEP_S
+    assert np.linalg.norm(steps, axis=1) == pytest.approx([WALKING_MPS] * (FRAMES - 1), abs=0.01)
+
+
+def test_each_frame_shows_the_places_of_the_recording_s_frame(exported: dict[str, Path], staged: Path) -> None:
+    log = read_log(staged / "recording.log")
+    (walker,) = log.ids_of(type_id="walker.*")
+    recorded = log.table(Kind.POSITIONS).of(walker).rows["location_cm"] / 100.0
+    places = [seen(exported["coco"], "FRONT", n)["pedestrian"].box[:2] for n in range(1, FRAMES + 1)]
+    assert np.array(places) == pytest.approx(recorded[:, :2], abs=1e-4)
+
+
+def test_a_lidar_s_points_are_counted_with_and_without_losses(exported: dict[str, Path]) -> None:
+    far = seen(exported["coco"], "TOP", 2)["far"]
+    assert 0 < far.cloud_points < far.visible <= far.whole
+
+
+def test_the_weather_changes_with_the_frames(exported: dict[str, Path]) -> None:
+    truth = read_truth(exported["coco"])
+    assert [frame.weather["precipitation"] for frame in truth.frames] == [0.0, 0.0, 100.0, 100.0]
+    dry, wet = (np.asarray(Image.open(exported["coco"] / f"images/FRONT/{n:06d}.png"), float) for n in (2, 3))
+    assert abs(dry.mean() - wet.mean()) > 5.0
+
+
+def test_pycocotools_loads_the_export(exported: dict[str, Path]) -> None:
+    coco = COCO(str(exported["coco"] / "annotations.json"))
+    assert len(coco.imgs) == FRAMES
+    for image in coco.imgs.values():
+        picture = Image.open(exported["coco"] / image["file_name"])
+        assert picture.size == (image["width"], image["height"])
+    assert {coco.cats[each["category_id"]]["name"] for each in coco.anns.values()} >= {"car", "traffic_cone"}
+
+
+def test_an_export_has_the_same_bytes_again(exported: dict[str, Path], staged: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again"
+    assert main(["truth", "export", str(staged), "--format", "coco", "-o", str(again), "--every", "1"]) == 0
+    files = sorted(path.relative_to(again) for path in again.rglob("*") if path.is_file())
+    assert files == sorted(p.relative_to(exported["coco"]) for p in exported["coco"].rglob("*") if p.is_file())
+    for name in files:
+        assert (again / name).read_bytes() == (exported["coco"] / name).read_bytes(), name
+
+
+def test_runs_that_cannot_be_exported_are_named(
+    staged: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(staged, run)
+
+    def refused(*words: str) -> str:
+        assert main(["truth", "export", str(run), "--format", "coco", "-o", str(tmp_path / "out"), *words]) == 2
+        assert not (tmp_path / "out").exists()
+        return capsys.readouterr().err
+
+    assert "--every is 0" in refused("--every", "0")
+    document = json.loads((run / "recording.json").read_text())
+    (run / "recording.json").write_text(json.dumps({**document, "vehicle_id": 9999}))
+    assert "has no vehicle 9999" in refused()
+    (run / "recording.json").write_text(json.dumps({**document, "sensors": []}))
+    assert "declared no camera and no lidar; name a sensor file" in refused()
+    (run / "recording.json").write_text("{}")
+    assert "is not what --record writes" in refused()
+    (run / "recording.json").unlink()
+    assert "run it again with --record" in refused()
+    (run / "recording.log").unlink()
+    assert "has no recording.log" in refused()
+
+
+def test_a_folder_that_is_there_stays(staged: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kept = tmp_path / "kept.txt"
+    kept.write_text("mine")
+    assert main(["truth", "export", str(staged), "--format", "coco", "-o", str(tmp_path)]) == 2
+    assert "is there already; name another folder" in capsys.readouterr().err
+    assert kept.read_text() == "mine"
