@@ -1,6 +1,7 @@
 """A truth without a simulator, and a staged run with its export."""
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -97,11 +98,14 @@ def staged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def exported(staged: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Path]]:
-    """Return an export of the staged run in each format."""
-    found = {}
-    for name in ("coco",):
-        found[name] = tmp_path_factory.mktemp("exports") / name
-        words = ["truth", "export", str(staged), "--format", name, "-o", str(found[name]), "--every", "1"]
+def exported(staged: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return what exports the staged run in a format, each format once."""
+
+    @functools.cache
+    def export(name: str) -> Path:
+        folder = tmp_path_factory.mktemp("exports") / name
+        words = ["truth", "export", str(staged), "--format", name, "-o", str(folder), "--every", "1"]
         assert main(words) == 0
-    return found
+        return folder
+
+    return export

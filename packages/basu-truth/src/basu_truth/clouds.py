@@ -34,6 +34,12 @@ def points_of(
     return np.frombuffer(measured.raw_data, np.float32).reshape(-1, 4).copy()
 
 
+def rings_of(measured: carla.LidarMeasurement | carla.SemanticLidarMeasurement) -> NDArray[np.float32]:
+    """Return the number of the channel of each point (N,); the lowest number looks up."""
+    counts = [measured.get_point_count(channel) for channel in range(measured.channels)]
+    return np.repeat(np.arange(len(counts), dtype=np.float32), counts)
+
+
 def numbers_of_points(points: NDArray[np.float32], rows: NDArray[Any]) -> NDArray[np.int64]:
     """Return the number of the object of each point (N, 4) of a declared lidar; 0 where it is none's.
 

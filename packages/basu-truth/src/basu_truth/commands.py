@@ -11,7 +11,7 @@ from basu.options.run import RunOptions
 from basu.plugins import Command
 from basu.settings.command_line import add_options
 
-FORMATS = ("coco",)
+FORMATS = ("coco", "kitti", "nuscenes")
 USUAL_EVERY = 10  # two frames a second of a run's twenty, as in nuScenes
 
 

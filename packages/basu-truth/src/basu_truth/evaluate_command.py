@@ -58,7 +58,7 @@ def table(found: Evaluation) -> str:
     """Return the scores as a table for the console."""
     names = list(dict.fromkeys(name for row in found.rows for name in row.scores))
     head = f"{'':<12}{'':<20}{'objects':>8}" + "".join(f"{name:>9}" for name in names)
-    lines = [f"{found.run}: {found.form} detections, {found.sensor}, objects from {found.least} on", head]
+    lines = [f"{found.run}: {found.form} detections, {found.sensor}", head]
     for row in found.rows:
         cells = "".join(f"{_number(row.scores.get(name)):>9}" for name in names)
         lines.append(f"{row.by:<12}{row.name:<20}{row.objects:>8}{cells}")

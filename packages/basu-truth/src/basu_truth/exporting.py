@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 from basu.errors import UserError
 from basu_truth.alone import alone_world
 from basu_truth.formats.coco import CocoWriter
+from basu_truth.formats.kitti import KittiWriter
+from basu_truth.formats.nuscenes import NuscenesWriter
 from basu_truth.geometry import pose_of
 from basu_truth.observing import Observer
 from basu_truth.scene import replayed
@@ -34,7 +36,11 @@ class Writer(Protocol):
         """Write what is written once all frames are known."""
 
 
-WRITERS: dict[str, Callable[[Path, Sequence[Sensor]], Writer]] = {"coco": CocoWriter}
+WRITERS: dict[str, Callable[[Path, Sequence[Sensor]], Writer]] = {
+    "coco": CocoWriter,
+    "kitti": KittiWriter,
+    "nuscenes": NuscenesWriter,
+}
 """The formats of exports."""
 
 

@@ -26,7 +26,8 @@ ADDITIONAL_DATA = True  # velocities, boxes, physics: the input of queries
 class RecordingManager(BaseManager):
     """Has the simulator record from the first step to the last, and keeps what its log lacks.
 
-    The log lacks its map, the sensors of the vehicle under test, and the weather.
+    That is the map, the sensors of the vehicle under test, and the weather.
+
     ``path`` is where the simulator says that it writes the log.
     """
 
