@@ -16,6 +16,7 @@ from basu_carla_log import read_log
 from basu_carla_log.layouts import Kind
 from basu_truth.formats.nuscenes import token
 from basu_truth.truth import SeenObject, read_truth
+from made_detections import coco_results, written
 from staged_run import AHEAD_M, CAMERA, FRAMES, STEP_S, WALKING_MPS
 
 Exports = Callable[[str], Path]
@@ -168,6 +169,7 @@ def test_runs_that_cannot_be_exported_are_named(
         return capsys.readouterr().err
 
     assert "--every is 0" in refused("--every", "0")
+    assert "there is no weather called 'Hail'" in refused("--weather", "Hail")
     document = json.loads((run / "recording.json").read_text())
     (run / "recording.json").write_text(json.dumps({**document, "vehicle_id": 9999}))
     assert "has no vehicle 9999" in refused()
@@ -179,6 +181,21 @@ def test_runs_that_cannot_be_exported_are_named(
     assert "run it again with --record" in refused()
     (run / "recording.log").unlink()
     assert "has no recording.log" in refused()
+
+
+def test_a_run_is_scored_without_an_export(exported: Exports, staged: Path, tmp_path: Path) -> None:
+    detections = written(tmp_path / "d.json", coco_results(read_truth(exported("coco"))))
+    target = tmp_path / "scores.json"
+    command = ["truth", "evaluate", str(staged), "--detections", str(detections), "--every", "1", "--json", str(target)]
+    assert main(command) == 0
+    assert json.loads(target.read_text())["rows"][0]["scores"]["AP"] == 1.0
+
+
+def test_a_run_is_exported_in_another_weather(staged: Path, tmp_path: Path) -> None:
+    words = ["--format", "coco", "-o", str(tmp_path / "night"), "--every", "4", "--weather", "ClearNight"]
+    assert main(["truth", "export", str(staged), *words]) == 0
+    (frame,) = read_truth(tmp_path / "night").frames
+    assert frame.weather["sun_altitude_angle"] < 0.0
 
 
 def test_a_folder_that_is_there_stays(staged: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -65,6 +65,9 @@ def _add_replay(command: argparse.ArgumentParser) -> None:
         "--sensors", type=Path, metavar="FILE.json", help="look with these sensors (default: those of the run)"
     )
     command.add_argument(
+        "--weather", metavar="NAME", help="replay in one of CARLA's presets (default: as the run was driven)"
+    )
+    command.add_argument(
         "--every",
         type=int,
         default=USUAL_EVERY,

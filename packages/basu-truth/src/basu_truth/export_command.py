@@ -12,7 +12,7 @@ from basu.errors import UserError
 from basu.options.run import RunOptions
 from basu_carla_log.server_replay import Where
 from basu_truth.exporting import export
-from basu_truth.recorded_run import read_run
+from basu_truth.recorded_run import in_weather, read_run
 from basu_truth.truth import read_truth
 
 if TYPE_CHECKING:
@@ -49,6 +49,8 @@ def write_export(arguments: argparse.Namespace, run_folder: Path, folder: Path, 
     options = options_of(RunOptions, arguments)
     where = Where(options.host, options.port, options.timeout_s)
     recorded = read_run(run_folder, arguments.sensors)
+    if arguments.weather is not None:
+        recorded = in_weather(recorded, arguments.weather)
     least_s = 0.1 if sys.stderr.isatty() else 10.0
     with tqdm(total=recorded.log.frames, unit=" frames", desc="exporting", mininterval=least_s) as bar:
         for done in export(recorded, folder, format_name, where, every=arguments.every):

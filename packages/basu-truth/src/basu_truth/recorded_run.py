@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.episode.world import weather_called
 from basu.errors import UserError
-from basu.managers.recorded_conditions import Conditions, read_conditions
+from basu.managers.recorded_conditions import Conditions, WeatherFrom, read_conditions
 from basu.records.recording_files import CONDITIONS_FILE
+from basu.routing.weather import WEATHER_FIELDS
 from basu_carla_log import Log, read_log
 from basu_carla_log.sources import source
 from basu_truth.rig import looking
@@ -68,3 +70,14 @@ def read_run(folder: Path, sensor_file: Path | None) -> RecordedRun:
     if log.frames == 0:
         raise UserError(f"{log_file} has no frame; run it again with --record")
     return RecordedRun(folder.resolve().name, log, conditions, sensors)
+
+
+def in_weather(run: RecordedRun, name: str) -> RecordedRun:
+    """Return a run as it would have looked in one of CARLA's presets of the weather, from its first frame to its last.
+
+    Raises:
+        UserError: there is no preset of that name.
+    """
+    preset = weather_called(name)
+    values = {field: float(getattr(preset, field)) for field in WEATHER_FIELDS}
+    return replace(run, conditions=run.conditions._replace(weather=(WeatherFrom(1, values),)))
