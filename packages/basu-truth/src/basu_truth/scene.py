@@ -155,6 +155,11 @@ class Scene:
             latest = self._streams.wait(snapshot.frame)
         except SensorSilentError as error:
             raise SimulatorError(str(error)) from error
+        if late := [name for name, (frame, _) in latest.items() if frame != snapshot.frame]:
+            raise SimulatorError(
+                f"sensor {late[0].partition('/')[0]} did not measure in frame {number} of the recording; this "
+                "simulator keeps other times for sensor_tick: export with --every 1"
+            )
         ego = snapshot.find(hero.id)
         return Shot(
             number,
