@@ -37,6 +37,7 @@ OPTIONAL = (
         "basu_ros",
         "basu_search",
         "basu_sumo",
+        "basu_truth",
         "basu_window",
         "linden_gym",
         "linden_window",

@@ -48,11 +48,11 @@ def play(log: Log, where: Where, *, speed: float, progress: Progress) -> None:
         UserError: no server answers there, or the simulator cannot replay the file.
         SimulatorError: it went away.
     """
-    with _simulator(log.path, where) as (client, address):
+    with simulator_for(log.path, where) as (client, address):
         step_s = float(np.median(np.diff(log.elapsed_s))) if log.frames > 1 else 0.05
         hero = next(iter(log.ids_of(role_name="hero")), NO_ACTOR)
         with ticked_by_us(client.get_world(), step_s):  # a replay goes on by itself where no client holds the clock
-            world = _begun(client, log, hero)
+            world = begin_replay(client, log, hero)
             progress.ready(address)
             with ticked_by_us(world, step_s):  # again: another map comes with settings of its own
                 _go_on(world, log.frames, step_s, speed, where.timeout_s, progress.frame)
@@ -61,8 +61,12 @@ def play(log: Log, where: Where, *, speed: float, progress: Progress) -> None:
 
 
 @contextlib.contextmanager
-def _simulator(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
-    """Yield the simulator and its address."""
+def simulator_for(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
+    """Yield the simulator that can read a recorder file, and its address.
+
+    Raises:
+        UserError: no server answers there.
+    """
     if where.host is not None:
         yield connect(where.host, where.port, where.timeout_s), f"{where.host}:{where.port}"
         return
@@ -73,8 +77,12 @@ def _simulator(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
         server.end()
 
 
-def _begun(client: carla.Client, log: Log, hero: int) -> carla.World:
-    """Return the world in which the replay has begun."""
+def begin_replay(client: carla.Client, log: Log, hero: int) -> carla.World:
+    """Begin a replay and return its world; the spectator follows the actor ``hero``.
+
+    Raises:
+        UserError: the simulator cannot replay the file.
+    """
     try:
         client.replay_file(str(log.path.resolve()), 0.0, 0.0, hero)
         world = client.get_world()

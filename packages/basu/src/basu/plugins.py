@@ -30,6 +30,7 @@ DISTRIBUTIONS = {
         "replay": "basu-carla-log",
         "ros": "basu-ros",
         "sumo": "basu-sumo",
+        "truth": "basu-truth",
         "watch": "basu-window",
     },
     AGENTS: dict.fromkeys(("autoware", "autoware-ai", "ros", "ros1"), "basu-ros"),

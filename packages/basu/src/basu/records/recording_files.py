@@ -8,7 +8,7 @@ import carla
 
 from basu.errors import UserError
 
-LOG_FILE, MAP_FILE = "recording.log", "map.xodr"  # in a run's folder
+LOG_FILE, MAP_FILE, CONDITIONS_FILE = "recording.log", "map.xodr", "recording.json"  # in a run's folder
 
 
 def read_map(path: Path, name: str) -> carla.Map:

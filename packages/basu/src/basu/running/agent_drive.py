@@ -105,7 +105,8 @@ class AgentDrive:
         found: list[BaseManager] = [] if self._quiet else [ProgressBar(live)]
         if self._options.record:
             here = str((self.episode.vehicle.run.folder / LOG_FILE).resolve())
-            self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
+            name = here if self._simulator.own else f"{self._log_name}.log"
+            self._recording = RecordingManager(name, lambda: live.sensors.specs)
             found.append(self._recording)
         say = (lambda _: None) if self._quiet else print
         return [*found, *output_managers(self._options, ShownDrive(live, first.loaded.name, say))]
