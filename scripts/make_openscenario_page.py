@@ -48,6 +48,34 @@ If a file is broken, or asks for what is refused below, the command ends before 
 file, line and what to do. The drive ends with the storyboard. A storyboard without an end is played for a minute as
 written, and a minute longer with an agent.
 
+## Cases for other players
+
+`basu scenario export CASE -o case.xosc` writes a case of BASU as OpenSCENARIO XML 1.2, with its road beside it. esmini
+plays the file, and so does `basu scenario run case.xosc`. It needs `pip install "basu-openscenario[export]"`.
+
+```console
+$ basu scenario export pedestrian_crossing_1 -o case.xosc
+$ basu scenario export all -o exported
+$ esmini --osc case.xosc --window 60 60 800 400
+```
+
+- **Triggers are conditions.** The others wait for the ego, whatever drives it. A distance along the ego's route is a
+  `TraveledDistanceCondition`. No condition has a time along a route. A time to a place is a distance for each band of
+  the ego's speed, 0.5 m/s wide.
+- **Motions are trajectories with times.** They come from a rehearsal in which the ego drives 6 m/s and brakes for what
+  is in its lane. After its trigger, an actor moves as in the rehearsal. It does not brake for the ego, and it does not
+  vary its speed to meet the ego, as it does in BASU.
+- **The ego** is called `hero` and follows its way of the rehearsal. Give it a controller of your own.
+- The reference point of each entity is the middle of its box, as in CARLA.
+- Lights are set by `TrafficSignalStateAction`. In the road file they have the country `OpenDRIVE`, as esmini asks.
+- Weather and criteria are not written.
+
+What has no counterpart is refused by its name, and the other cases are written. These are disturbances of the ego's
+controls, friction of a part of the road, open doors, and triggers of a user's own class.
+[The decision](../decisions/0129-export-of-cases.md) has the reasons.
+
+## What is supported
+
 Words of the tables:
 
 - played: the simulator plays it.
