@@ -85,6 +85,7 @@ $ esmini --osc case.xosc --window 60 60 800 400
 
 What has no counterpart is refused by its name, and the other cases are written. These are disturbances of the ego's
 controls, friction of a part of the road and open doors. Triggers of a user's own class are refused as well.
+The page of [exported cases](exported-cases.md) has their number, and the distances to esmini.
 [The decision](../decisions/0129-export-of-cases.md) has the reasons.
 
 ## What is supported
