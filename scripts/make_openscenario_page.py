@@ -48,6 +48,48 @@ If a file is broken, or asks for what is refused below, the command ends before 
 file, line and what to do. The drive ends with the storyboard. A storyboard without an end is played for a minute as
 written, and a minute longer with an agent.
 
+## Distributions of parameters
+
+A file with a `ParameterValueDistribution` is a case for each of its runs. `basu scenario run DIST.xosc` plays them as
+one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `DIST-2` and so on.
+
+- A deterministic file gives all combinations, the last parameter changing fastest. It may have sets, ranges with steps,
+  and sets of values of several parameters.
+- A stochastic file gives `numberOfTestRuns` draws by its `randomSeed`, 0 without one. It may have the normal,
+  log-normal, uniform and Poisson distribution, a histogram, and values with weights. Each parameter has a generator
+  of its own.
+- `expectedValue` and `variance` of a log-normal distribution are its own moments, not those of the logarithm.
+- A file may have up to 10,000 runs.
+
+## Cases for other players
+
+`basu scenario export CASE -o case.xosc` writes a case of BASU as OpenSCENARIO XML 1.2, with its road beside it. esmini
+plays the file, and so does `basu scenario run case.xosc`. It needs `pip install "basu-openscenario[export]"`.
+
+```console
+$ basu scenario export pedestrian_crossing_1 -o case.xosc
+$ basu scenario export all -o exported
+$ esmini --osc case.xosc --window 60 60 800 400
+```
+
+- **Triggers are conditions.** The others wait for the ego, whatever drives it. A distance along the ego's route is a
+  `TraveledDistanceCondition`. No condition has a time along a route. A time to a place is a distance for each band of
+  the ego's speed, 0.5 m/s wide.
+- **Motions are trajectories with times.** They come from a rehearsal in which the ego drives 6 m/s and brakes for what
+  is in its lane. After its trigger, an actor moves as in the rehearsal. It does not brake for the ego, and it does not
+  vary its speed to meet the ego, as it does in BASU.
+- **The ego** is called `hero` and follows its way of the rehearsal. Give it a controller of your own.
+- The reference point of each entity is the middle of its box, as in CARLA.
+- Lights are set by `TrafficSignalStateAction`. In the road file they have the country `OpenDRIVE`, as esmini asks.
+- Weather and criteria are not written.
+
+What has no counterpart is refused by its name, and the other cases are written. These are disturbances of the ego's
+controls, friction of a part of the road and open doors. Triggers of a user's own class are refused as well.
+The page of [exported cases](exported-cases.md) has their number, and the distances to esmini.
+[The decision](../decisions/0129-export-of-cases.md) has the reasons.
+
+## What is supported
+
 Words of the tables:
 
 - played: the simulator plays it.
@@ -187,7 +229,8 @@ TAIL = """## Other parts
 | priorities, `maximumExecutionCount`, triggers with edges and delays | played |
 | `selectTriggeringEntities="true"` | refused |
 | `Trailer` | refused |
-| `ParameterValueDistribution` | refused: use `--sweep` or `--grid` on the parameters |
+| `ParameterValueDistribution` | a case for each run, see above |
+| `UserDefinedDistribution` | refused |
 | monitors, traffic definitions | refused |
 
 Decisions: [two modes](../decisions/0126-openscenario.md), [esmini as the judge](../decisions/0127-esmini.md),

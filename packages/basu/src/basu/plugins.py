@@ -39,6 +39,7 @@ DISTRIBUTIONS = {
     OUTPUTS: {"window": "basu-window", "viewer": "basu-window", "ros": "basu-ros"},
     PARTS: {
         "person": "basu-window",
+        "scenario_export": "basu-openscenario",
         "search": "basu-search",
         "sumo": "basu-sumo",
         "viewer_replay": "basu-window",

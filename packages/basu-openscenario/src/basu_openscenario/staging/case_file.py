@@ -1,38 +1,51 @@
-"""The reader of OpenSCENARIO files for the library of cases: one class and one case a file."""
+"""The reader of OpenSCENARIO files for the library of cases: a class a file, and a case, or one for each run."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from basu.errors import ScenarioError
 from basu.scenarios.cases import ScenarioFile as CaseFile
+from basu.scenarios.parameters import Choice
 from basu.scenarios.stage import Pose
 from basu.scenarios.xml_elements import Case, GivenActor
+from basu_openscenario.reading.distributions import read_distribution
 from basu_openscenario.reading.scenario_file import read_scenario
 from basu_openscenario.staging.open_scenario import OpenScenario, ego_of, parameters_of
 from basu_openscenario.staging.refusals import check_staged
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
+
+    from basu.scenarios.parameters import Parameter
+    from basu_openscenario.reading.distributions import Assignment
+    from basu_openscenario.reading.scenario_file import ScenarioFile
 
 
 def read_case_file(path: Path) -> CaseFile:
-    """Return the class and the case of a file.
+    """Return the class and the case of a file; a file with a distribution of parameters has a case for each run.
 
     Raises:
         ScenarioError: the file is broken, or asks for what is not supported.
     """
     path = path.resolve()
-    scenario = read_scenario(path)
+    distribution = read_distribution(path)
+    file = path if distribution is None else distribution.scenario
+    runs = ({},) if distribution is None else distribution.runs
+    scenario = read_scenario(file)
+    _check_runs(runs, scenario, path)
     check_staged(scenario)
     assert scenario.road_file is not None, "a file without a road network was refused"
     words = re.findall(r"[A-Za-z0-9]+", path.stem)
     name = "".join(word[:1].upper() + word[1:] for word in words) + "Xosc"
     members = {
         "__doc__": scenario.description or f"The OpenSCENARIO file {path.name}.",
-        "file": path,
+        "file": file,
         "defaults": {one: declared.value for one, declared in scenario.declarations.items()},
-        "parameters": parameters_of(scenario, ego_of(scenario)),
+        "parameters": (*parameters_of(scenario, ego_of(scenario)), *_words(runs, scenario)),
     }
     case = Case(
         name=re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem),
@@ -42,4 +55,33 @@ def read_case_file(path: Path) -> CaseFile:
         map_file=scenario.road_file,
         source=str(path),
     )
-    return CaseFile([type(name, (OpenScenario,), members)], (case,))
+    if distribution is None:
+        cases: tuple[Case, ...] = (case,)
+    else:
+        digits = len(str(len(runs)))
+        cases = tuple(
+            replace(case, name=f"{case.name}-{nth:0{digits}}", values=values) for nth, values in enumerate(runs, 1)
+        )
+    return CaseFile([type(name, (OpenScenario,), members)], cases)
+
+
+def _check_runs(runs: Sequence[Assignment], scenario: ScenarioFile, path: Path) -> None:
+    """Refuse parameters that the scenario does not declare.
+
+    Raises:
+        ScenarioError: there is one.
+    """
+    for name in dict.fromkeys(name for values in runs for name in values):
+        if name not in scenario.declarations:
+            there = ", ".join(scenario.declarations) or "none"
+            raise ScenarioError(f"{path}: {scenario.path} declares no parameter '{name}'; it declares {there}")
+
+
+def _words(runs: Sequence[Assignment], scenario: ScenarioFile) -> list[Parameter]:
+    """Return the parameters that are words and have values in a distribution; others are not parameters of a case."""
+    found: list[Parameter] = []
+    for name, declared in scenario.declarations.items():
+        values = dict.fromkeys(values[name] for values in runs if name in values)
+        if values and declared.kind in {"string", "dateTime"}:
+            found.append(Choice(name, tuple(dict.fromkeys((declared.value, *values))), "a parameter of the file"))
+    return found

@@ -1,4 +1,4 @@
-"""Arguments of ``basu scenario list``, ``run``, ``draw`` and ``report``."""
+"""Arguments of ``basu scenario list``, ``run``, ``draw``, ``export`` and ``report``."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ def add_scenario(scenario: argparse.ArgumentParser) -> None:
     _add_list(actions.add_parser("list", help="show scenarios, parameters and cases"))
     _add_run(actions.add_parser("run", help="play cases with agents"))
     _add_draw(actions.add_parser("draw", help="show a behaviour tree"))
+    _add_export(actions.add_parser("export", help="write cases as OpenSCENARIO files"))
     report = actions.add_parser("report", help="make the report of a run again")
     report.description = "Make table, JUnit XML, page and maps of a run again, from what lies in its folder."
     report.add_argument("folder", type=Path, metavar="FOLDER", help="of a run, such as scenario-runs/latest")
@@ -75,3 +76,20 @@ def _add_draw(draw: argparse.ArgumentParser) -> None:
     draw.add_argument("--form", choices=FORMS, default="text", help="(default: %(default)s)")
     draw.add_argument("--output", type=Path, metavar="FILE", help="write it there (default: show it)")
     draw.set_defaults(command=later("basu.cli.scenario_draw:run"))
+
+
+def _add_export(export: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu scenario export``."""
+    export.description = (
+        "Write cases as OpenSCENARIO files, with their roads beside them, for esmini and other players."
+    )
+    export.set_defaults(command=later("basu.cli.scenario_export:run"))
+    add_options(export, ScenarioOptions, only=("what", "files", "host", "port", "timeout_s"))
+    export.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="PATH",
+        help="FILE.xosc for one case, or a folder, which gets a file for each case",
+    )

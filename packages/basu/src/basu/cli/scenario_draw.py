@@ -6,8 +6,8 @@ import argparse
 
 from basu.cli.typed_options import options_of
 from basu.files import write_bytes
-from basu.running.scenario_runs.one_case import drawn
 from basu.running.scenario_runs.options import ScenarioOptions
+from basu.running.scenario_runs.placed_cases import drawn
 from basu.settings.option import Layer
 
 

@@ -283,8 +283,13 @@ class OfflineStage:
         self.commands.append(StageCommand(self.time_s, what, details))
 
 
+def half_sizes_m(blueprint: str) -> tuple[float, float]:
+    """Return half the length and half the width of the bodies of a blueprint, in m."""
+    return next(size[1:] for size in SIZES_M if blueprint.startswith(size[0]))
+
+
 def _entering(spec: ActorSpec) -> ActorBox:
     """An actor at its entrance."""
-    half_m = next(size[1:] for size in SIZES_M if spec.blueprint.startswith(size[0]))
+    half_m = half_sizes_m(spec.blueprint)
     yaw_rad = spec.pose.yaw_rad
     return ActorBox(*spec.pose, spec.speed_mps * math.cos(yaw_rad), spec.speed_mps * math.sin(yaw_rad), *half_m)

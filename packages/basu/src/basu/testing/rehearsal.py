@@ -17,7 +17,10 @@ from basu.scenarios.stage import EGO
 from basu.testing.offline_stage import OfflineStage
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
+    from py_trees.behaviour import Behaviour
 
     from basu.scenarios.scenario import Composed, Scenario
     from basu.scenarios.stage import ActorBox
@@ -86,6 +89,7 @@ class Rehearsal:
     ego_s_m: NDArray[np.float64]  # (T,) along its route
     trails: dict[str, NDArray[np.float64]]  # by role (T, 4): x, y in m, yaw in rad, speed in m/s; nan while not there
     commands: tuple[StageCommand, ...]
+    spans_s: dict[Behaviour, tuple[float, float | None]]  # when each node of the tree began and ended; None: not ended
 
     @property
     def over(self) -> bool:
@@ -115,6 +119,8 @@ def rehearse(
     set_on(tree, stage)
     phases_s: dict[str, float] = {}
     contacts_s: dict[str, float] = {}
+    spans_s: dict[Behaviour, tuple[float, float | None]] = {}
+    nodes = list(tree.root.root.iterate())
     frames: list[tuple[float, float, dict[str, ActorBox]]] = []
     for _ in range(1 + round((until_s or scenario.timeout_s) / step_s)):
         frames.append((stage.time_s, stage.ego_s_m, {name: stage.body(name) for name in stage.names}))
@@ -122,6 +128,7 @@ def rehearse(
         for phase, node in tree.phases.items():
             if node.status != Status.INVALID:
                 phases_s.setdefault(phase, stage.time_s)
+        _note_spans(nodes, spans_s, stage.time_s)
         for name in sorted(stage.ego_contacts):
             contacts_s.setdefault(name, stage.time_s)
         if tree.root.root.status in (Status.SUCCESS, Status.FAILURE):
@@ -135,7 +142,18 @@ def rehearse(
         ego_s_m=np.array([frame[1] for frame in frames]),
         trails=_trails([frame[2] for frame in frames]),
         commands=tuple(stage.commands),
+        spans_s=spans_s,
     )
+
+
+def _note_spans(nodes: Sequence[Behaviour], spans_s: dict[Behaviour, tuple[float, float | None]], now_s: float) -> None:
+    """Note which nodes have begun or ended in this frame."""
+    for node in nodes:
+        if node.status == Status.RUNNING:
+            spans_s.setdefault(node, (now_s, None))
+        elif node.status != Status.INVALID or node in spans_s:
+            began_s, ended_s = spans_s.get(node, (now_s, None))
+            spans_s[node] = began_s, now_s if ended_s is None else ended_s
 
 
 def _trails(frames: list[dict[str, ActorBox]]) -> dict[str, NDArray[np.float64]]:

@@ -1,4 +1,4 @@
-"""Plays one case with one agent in a fresh world and writes its folder, or draws its behaviour tree."""
+"""Plays one case with one agent in a fresh world and writes its folder."""
 
 from __future__ import annotations
 
@@ -7,16 +7,13 @@ import time
 import traceback
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timezone
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import case_spec
 from basu.episode.failures import outcome_of
-from basu.episode.spec import description_of
-from basu.episode.world import asking, towns_of, weather_called, world_with
+from basu.episode.world import weather_called
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
-from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.metrics.registry import user_metrics
 from basu.metrics.result import judge
 from basu.metrics.scoring import Scoring
@@ -24,19 +21,14 @@ from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, p
 from basu.output.report.scenarios.drawing.picture import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
-from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription
 from basu.running.agent_drive import AgentDrive
 from basu.running.drive import DriveDone, Driven
 from basu.running.preparation import agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
-from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
 from basu.running.shuttles import SensorSet, Shuttle
-from basu.scenarios.cases import cases_of
-from basu.scenarios.tree_picture import draw
 from basu.scenarios.verdict import judge as verdict_of
-from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -227,25 +219,3 @@ def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager
         agents = new_agents(loaded, options, options.seed, has_conditions=False)
         is_blind = loaded.file is None and not options.shows_sensors
         return agents, SensorSet((), loaded.name) if is_blind else sensor_set(agents, loaded)
-
-
-def drawn(options: ScenarioOptions, form: str) -> str:
-    """The tree of the first case that ``options.what`` means, in a form of ``basu.scenarios.tree_picture.FORMS``.
-
-    Raises:
-        UserError: there is no such case, or it cannot be laid on its map.
-        SimulatorError: there is no simulator to ask for the map.
-    """
-    playable = cases_of(options.what, options.files)[0]
-    case = playable.case
-    with (
-        maps_of([case]) as folders,
-        simulator_for(with_maps(options.simulator, folders)) as simulator,
-        asking(f"loading {case.town}"),
-        simulator.long_call(),
-    ):
-        check_town(case, towns_of(simulator, [case.town]))
-        _, carla_map = world_with(simulator, case.town)
-        route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
-        placed = place_scenario(playable, route, carla_map, own=True)
-        return call_scenario(case.name, partial(draw, placed.scenario, form))

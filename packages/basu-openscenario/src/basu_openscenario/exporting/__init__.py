@@ -1,0 +1,1 @@
+"""Cases of BASU as OpenSCENARIO files: triggers as conditions, motions as trajectories of a rehearsal."""
