@@ -14,7 +14,7 @@ import carla
 from basu import plugins
 from basu.agents import agent_files
 from basu.agents.agent_files import AgentFile
-from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.autonomous_agent import AddressedAgent, AutonomousAgent
 from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
 from basu.errors import UserError
@@ -83,6 +83,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
 
     ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight.
     ``basic:no-cyclists`` is ``basic`` blind to cyclists; so for every kind of ``basu.records.partners.Partner``.
+    ``egodriver:HOST:PORT`` is the software at an address (`AddressedAgent`).
 
     ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
     a file's name.
@@ -129,9 +130,12 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
 
 
 def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> LoadedAgent:
-    """A built-in agent as it is, or a variant of its perception: ``basic:full``, ``basic:no-cyclists``."""
+    """An agent as it is, a variant of its perception (``basic:full``, ``basic:no-cyclists``), or one at an address."""
     if not knowledge:
         return LoadedAgent(agent, name, None)
+    if issubclass(agent, AddressedAgent):
+        addressed = type(agent.__name__, (agent,), {"address": knowledge, "__module__": agent.__module__})
+        return LoadedAgent(addressed, name, None)
     if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
         raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
     if knowledge not in PERCEPTIONS:

@@ -1,0 +1,1 @@
+"""AlpaSim's ``egodriver`` protocol: its policies as agents of BASU, and agents of BASU as policies."""
