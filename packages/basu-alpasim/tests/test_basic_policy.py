@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from carla_driver_interface.geometry import Pose
 from carla_driver_interface.server import serving
-from carla_driver_interface.testing import FakeLoop, LoopResult
+from carla_driver_interface.testing import FakeCamera, FakeLoop, LoopResult
 
 from basu.agents.builtin.scene import VehicleGeometry
 from basu_alpasim.basic_policy import BasicPolicy, Known, sent_route
@@ -25,7 +25,7 @@ def address(request: pytest.FixtureRequest) -> Iterator[str]:
 
 def judged(address: str, steps: int, **start: float) -> LoopResult:
     """Return what the unmodified loop of carla-driver-interface saw."""
-    with FakeLoop(address, **start) as loop:
+    with FakeLoop(address, [FakeCamera(width=64, height=36)], **start) as loop:
         return loop.run(steps)
 
 
