@@ -9,17 +9,27 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import carla
 import pytest
 from carla_driver_interface.driver import DriveContext, DriveResult, SessionState
 from carla_driver_interface.policies import ConstantSpeedPolicy, RouteFollowerPolicy
 from carla_driver_interface.server import serving
 
+from basu.agents.builtin.perception import OTHERS_TOP_MPS
+from basu.agents.builtin.scene import VehicleGeometry
+from basu.agents.loader import load_agent
 from basu.errors import UserError
+from basu.routing import plan
+from basu.routing.route_file import read_routes
 from basu_alpasim.agent import EgodriverAgent
+from basu_alpasim.basic_policy import BasicPolicy, Known
 from basu_alpasim.policy_client import PolicyClient
+from basu_fixtures import SHORT_ROUTE
 from fakes.egodriver_policies import SPOILS, FailingServicer, OtherRevision, OtherVersion, Refusing, served
 from ros_runs import has_failed, has_followed_the_route, run
 from servers import RunningServer
+
+MAP = Path(__file__).parents[2] / "linden" / "src" / "linden" / "data" / "Linden.xodr"
 
 
 @pytest.fixture(autouse=True)
@@ -147,6 +157,35 @@ def test_an_address_without_a_policy_is_a_time_out(at: Any, monkeypatch: pytest.
     _, result, _ = at("127.0.0.1:1")
     assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent")
     assert "no policy answers at 127.0.0.1:1 within 0.5 s of wall time; start it" in result["message"]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "address", "name"),
+    [
+        ("egodriver", "127.0.0.1:50051", "egodriver"),
+        ("egodriver:policies:7", "policies:7", "egodriver-policies-7"),
+        ("egodriver:unix:///run/policy.sock", "unix:///run/policy.sock", "egodriver-unix-run-policy.sock"),
+    ],
+)
+def test_the_address_stands_behind_the_name(wanted: str, address: str, name: str) -> None:
+    loaded = load_agent(wanted)
+    assert issubclass(loaded.agent_class, EgodriverAgent)
+    assert (loaded.agent_class.address, loaded.name) == (address, name)
+
+
+@pytest.mark.slow
+def test_basic_behind_the_protocol_drives_as_well_as_basic_itself(simulator: RunningServer, tmp_path: Path) -> None:
+    description = read_routes(SHORT_ROUTE)[0]
+    route = plan(carla.Map("Linden", MAP.read_text("utf-8")), description)
+    body = VehicleGeometry(wheelbase_m=2.87, rear_axle_m=1.44, front_m=2.4, rear_m=2.4, half_width_m=1.08)
+    policy = BasicPolicy(Known(body, route, OTHERS_TOP_MPS))
+    with serving(policy, port=0, host="127.0.0.1") as port:
+        _, behind, _ = run(f"egodriver:127.0.0.1:{port}", simulator, SHORT_ROUTE, tmp_path / "behind")
+    model3 = ("--vehicle", "vehicle.tesla.model3")
+    _, itself, _ = run("basic", simulator, SHORT_ROUTE, tmp_path / "itself", *model3)
+    assert behind["passed"], behind["reasons"]
+    assert behind["scores"]["driving"] == pytest.approx(itself["scores"]["driving"], abs=0.002)
+    assert behind["meta"]["simulated_s"] == pytest.approx(itself["meta"]["simulated_s"], abs=1.0)
 
 
 @pytest.mark.parametrize("address", ["localhost", "localhost:", "nonsense:port"])

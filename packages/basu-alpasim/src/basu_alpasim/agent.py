@@ -63,7 +63,8 @@ class EgodriverAgent(AddressedAgent):
         self._lights = [
             (control, light)
             for control in self.route.controls
-            if control.kind is ControlKind.TRAFFIC_LIGHT
+            if self._tells
+            and control.kind is ControlKind.TRAFFIC_LIGHT
             and (light := self.world.get_traffic_light_from_opendrive_id(control.landmark_id)) is not None
         ]
         self._every = max(1, round(ASK_EVERY_S / self.time_step_s))

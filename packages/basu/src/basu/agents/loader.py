@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import inspect
+import re
 import traceback
 from pathlib import Path
 from typing import NamedTuple
@@ -40,6 +41,7 @@ PERCEPTIONS: dict[str, dict[str, object]] = {  # what a variant of a built-in ag
     **{f"no-{kind.value}s": {"blind_to": frozenset({kind})} for kind in Partner if kind is not Partner.NONE},
 }
 
+NOT_IN_NAMES = r"[^\w.-]+"  # of an address, in the name of a folder
 LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large
 
 
@@ -135,7 +137,7 @@ def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> 
         return LoadedAgent(agent, name, None)
     if issubclass(agent, AddressedAgent):
         addressed = type(agent.__name__, (agent,), {"address": knowledge, "__module__": agent.__module__})
-        return LoadedAgent(addressed, name, None)
+        return LoadedAgent(addressed, f"{name}-{re.sub(NOT_IN_NAMES, '-', knowledge)}", None)
     if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
         raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
     if knowledge not in PERCEPTIONS:
