@@ -140,10 +140,10 @@ def sent_route(rig: Pose, waypoints: NDArray[np.float64]) -> Route | None:
 
 def _others(data: CarlaRendererData | None) -> list[Other]:
     """The actors of CARLA's data."""
-    return [] if data is None else [_other(actor) for actor in data.actors]
+    return [] if data is None else [other_of(actor) for actor in data.actors]
 
 
-def _other(actor: CarlaActorState) -> Other:
+def other_of(actor: CarlaActorState) -> Other:
     """An actor as BASU's agents know it."""
     pose = Pose.from_proto(actor.pose_local_to_aabb)
     velocity = actor.dynamic_state.linear_velocity
