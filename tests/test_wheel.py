@@ -31,7 +31,10 @@ OPTIONAL = (
     "warp",
     *(
         "linden_maps",
+        "basu_alpasim",
         "basu_carla_log",
+        "carla_driver_interface",
+        "grpc",
         "basu_leaderboard",
         "basu_openscenario",
         "basu_ros",

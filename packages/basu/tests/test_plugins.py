@@ -71,7 +71,7 @@ def stranger(only: dict[str, dict[str, str]], tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.usefixtures("only")
-@pytest.mark.parametrize("command", ["metrics", "replay", "ros", "sumo", "truth", "watch"])
+@pytest.mark.parametrize("command", ["metrics", "replay", "ros", "serve", "sumo", "truth", "watch"])
 def test_a_command_without_its_plugin_names_what_to_install(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 2
     distribution = plugins.DISTRIBUTIONS[plugins.COMMANDS][command]
@@ -89,6 +89,7 @@ def test_a_command_without_its_plugin_names_what_to_install(command: str, capsys
         (["run", "human"], "basu-window"),
         (["run", "basic", "--rosbag"], "basu-ros"),
         (["run", "autoware", "--in-process"], "basu-ros"),
+        (["run", "egodriver:127.0.0.1:50051", "--in-process"], "basu-alpasim"),
         (["run", "basic", "--sumo"], "basu-sumo"),
     ],
 )

@@ -185,6 +185,16 @@ class AutonomousAgent(ABC):
         """Release what ``setup`` opened: files, windows, processes. BASU calls this once, however the run ends."""
 
 
+class AddressedAgent(AutonomousAgent):
+    """An agent of a plugin that drives by software at an address, which stands behind its name: ``NAME:ADDRESS``.
+
+    Attributes:
+        address: where the software is; the class has the one that an agent without an address takes.
+    """
+
+    address: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentConfig:
     """An agent's wishes; file names as given, looked for later."""

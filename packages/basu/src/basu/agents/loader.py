@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import inspect
+import re
 import traceback
 from pathlib import Path
 from typing import NamedTuple
@@ -14,7 +15,7 @@ import carla
 from basu import plugins
 from basu.agents import agent_files
 from basu.agents.agent_files import AgentFile
-from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.autonomous_agent import AddressedAgent, AutonomousAgent
 from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
 from basu.errors import UserError
@@ -40,6 +41,7 @@ PERCEPTIONS: dict[str, dict[str, object]] = {  # what a variant of a built-in ag
     **{f"no-{kind.value}s": {"blind_to": frozenset({kind})} for kind in Partner if kind is not Partner.NONE},
 }
 
+NOT_IN_NAMES = r"[^\w.-]+"  # of an address, in the name of a folder
 LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large
 
 
@@ -83,6 +85,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
 
     ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight.
     ``basic:no-cyclists`` is ``basic`` blind to cyclists; so for every kind of ``basu.records.partners.Partner``.
+    ``egodriver:HOST:PORT`` is the software at an address (`AddressedAgent`).
 
     ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
     a file's name.
@@ -129,9 +132,12 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
 
 
 def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> LoadedAgent:
-    """A built-in agent as it is, or a variant of its perception: ``basic:full``, ``basic:no-cyclists``."""
+    """An agent as it is, a variant of its perception (``basic:full``, ``basic:no-cyclists``), or one at an address."""
     if not knowledge:
         return LoadedAgent(agent, name, None)
+    if issubclass(agent, AddressedAgent):
+        addressed = type(agent.__name__, (agent,), {"address": knowledge, "__module__": agent.__module__})
+        return LoadedAgent(addressed, f"{name}-{re.sub(NOT_IN_NAMES, '-', knowledge)}", None)
     if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
         raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
     if knowledge not in PERCEPTIONS:
