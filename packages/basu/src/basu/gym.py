@@ -11,6 +11,8 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 - ``ego`` (6,): speed; acceleration forward, m/s²; yaw rate, clockwise; offset from the route, positive to the right;
   heading less the route's; posted limit, 0 where there is none.
 - ``route`` (10, 2): x, y of the route's points 5, 10, ..., 50 m ahead; the last point again behind its end.
+- ``stop_sign`` (2,): 1 and the way from the front bumper to the line of the next stop sign within 60 m at which the
+  vehicle has not stopped yet, as `basu.metrics.stop_signs` judges it; negative beyond the line; zeros if there is none.
 - ``others`` (8, 6): the nearest vehicles, walkers and things on the road within 60 m, nearest first: 1, x, y, heading
   less ours, velocity x, y. Rows of zeros where there are fewer.
 
@@ -24,6 +26,7 @@ standing still for too long, and at a scenario's end. It is ``truncated`` when t
 from __future__ import annotations
 
 import contextlib
+import math
 import weakref
 from typing import TYPE_CHECKING, Any
 
@@ -63,7 +66,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.episode import Step
+    from basu.episode import Observation, Step
     from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
     from basu.simulator import Simulator
@@ -158,7 +161,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
             found = self.episode.metrics.infractions_so_far()
             new, self._infractions = found[self._infractions :], len(found)
-        parts = self._parts(seen.driven_m - self._driven_m, len(new), outcome)
+        parts = self._parts(seen, len(new), outcome)
         self._driven_m = seen.driven_m
         info: dict[str, Any] = {"route_s_m": seen.progress.s_m, "infractions": new, "reward_parts": parts}
         if outcome is not None:
@@ -177,10 +180,17 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             said = success(outcome, history, found, results_of(playing, history, outcome))
         return said._asdict()
 
-    def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
+    def _parts(self, seen: Observation, infractions: int, outcome: Outcome | None) -> dict[str, float]:
         """Return the parts of a step's reward, by the names of `Reward`'s fields."""
-        status = None if outcome is None else outcome.status
-        return self._reward.parts(driven_m, infractions, status is Status.COMPLETED, status in FAILED)
+        status, ego = None if outcome is None else outcome.status, seen.frame.ego
+        return self._reward.parts(
+            driven_m=seen.driven_m - self._driven_m,
+            infractions=infractions,
+            arrived=status is Status.COMPLETED,
+            failed=status in FAILED,
+            push_mps2=math.hypot(ego.acceleration_x_mps2, ego.acceleration_y_mps2),
+            lateral_m=seen.progress.lateral_m,
+        )
 
     def close(self) -> None:
         """End the episode, and the simulator where it is ours."""

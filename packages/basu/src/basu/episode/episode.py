@@ -58,6 +58,7 @@ class Observation(NamedTuple):
     sensor_data: dict[str, tuple[int, Any]]  # the latest measurement of each sensor, with its frame
     progress: Progress  # along the route
     driven_m: float  # of the route, validly
+    in_lane: bool  # whether place and direction are those of the route
 
 
 class Step(NamedTuple):
@@ -285,8 +286,9 @@ class Episode:
         frame = next_frame(run, before)
         managers.sensors.tick(frame)
         managers.routes.tick(frame)
+        routes = managers.routes
         self._unrecorded = Observation(
-            frame, managers.sensors.data, managers.routes.progress, managers.routes.valid.driven_m
+            frame, managers.sensors.data, routes.progress, routes.valid.driven_m, routes.valid.check.in_lane
         )
         return self._unrecorded
 
