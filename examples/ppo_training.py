@@ -1,14 +1,14 @@
 """Train a driver of the short route by PPO of Stable-Baselines3, in many worlds of this process.
 
-usage: python examples/ppo_training.py [--actions 3000000] [--worlds 256] [--seed 0] [--output ppo]
+usage: python examples/ppo_training.py [--actions 1500000] [--worlds 256] [--seed 0] [--output ppo]
 
 It needs ``pip install linden-gym 'basu[sb3]'``, and writes policy.npz, curve.csv and curve.png. Then
 ``PPO_POLICY=ppo/policy.npz basu run examples/ppo_agent.py`` drives the policy through the server, as any agent.
 
 The same seed gives the same policy on the same machine. The reward is that of the environment, and two things help to
-learn it. The weight of discomfort grows from 0 to its own value, because a driver that still tries at random is never
-comfortable, and would learn to stand. Driving too fast to stop at a stop sign costs something, long before the sign
-is run. A driver that stops there in comfort pays nothing.
+learn it. The weights of discomfort and offset grow from 0 to their own values, because a driver that still tries at
+random is never comfortable, and would learn to stand. Driving too fast to stop at a stop sign costs something long
+before the line. A driver that stops there in comfort pays nothing.
 PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".
 """
 
@@ -32,13 +32,13 @@ from basu.gym import Reward
 from linden_gym import ID
 
 OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 100
-ROUGH_SHARE, COMFORT_SHARE = 0.2, 0.4  # of the training without a weight of discomfort, and while the weight grows
+ROUGH_SHARE, COMFORT_SHARE = 0.2, 0.4  # of the training without these weights, and while they grow
 TOO_FAST = -0.5  # for a second with 1 m/s more than `fastest_mps`
 BRAKING_MPS2, BEFORE_LINE_M = 0.8, 1.0
 GAMMA = 0.995
 SETTINGS = {"n_steps": 64, "batch_size": 2048, "n_epochs": 6, "gamma": GAMMA, "policy_kwargs": {"log_std_init": -0.7}}
 FASTEST_LEARNING, SLOWEST_LEARNING = 6e-4, 3e-5
-TRIED_EVERY = 10  # rollouts, from one drive without chance to the next
+TRIED_EVERY = 5  # rollouts, from one drive without chance to the next, once the reward is whole
 COLUMNS = ("actions", "episodes", "episode_return", "route_share", "infractions", "tried_return", "seconds")
 
 
@@ -53,8 +53,8 @@ def fastest_mps(to_line_m):
 class TrainingWorlds(VecEnv):
     """The environments `linden/Shuttle-v0` as Stable-Baselines3 wants them; an action holds for `HELD_STEPS` steps.
 
-    To save time, an episode ends as a failure once the vehicle has left its lane, or stands for 20 s. ``ended`` has the
-    return, the share of the route and the infractions of each episode that ended.
+    To save time, an episode ends as a failure once the vehicle has left its lane, stands for 20 s, or commits an
+    infraction. ``ended`` has the return, the share of the route and the infractions of each episode that ended.
     """
 
     render_mode = None
@@ -85,6 +85,7 @@ class TrainingWorlds(VecEnv):
             speed_mps, offset_m = seen["ego"][:, 0], seen["ego"][:, 3]
             self.stood = np.where(speed_mps < STANDING_MPS, self.stood + 1, 0)
             gives_up = (np.abs(offset_m) > OFF_LANE_M) | (self.stood > STANDING_ACTIONS * HELD_STEPS)
+            gives_up |= told["infractions"] > 0
             gives_up &= ~(terminated | truncated)
             reward = reward + self._help(seen, told) + np.where(gives_up, self.failure, 0.0)
             rewards += np.where(over, 0.0, reward)  # what an action that goes on does at a new beginning is not counted
@@ -107,7 +108,8 @@ class TrainingWorlds(VecEnv):
         """Return what the training adds to the reward of a step."""
         is_near, to_line_m = seen["stop_sign"].T
         too_fast_mps = is_near * np.maximum(0.0, seen["ego"][:, 0] - fastest_mps(to_line_m))
-        return TOO_FAST * STEP_S * too_fast_mps - (1.0 - self.comfort) * told["reward_parts"]["discomfort"]
+        parts = told["reward_parts"]
+        return TOO_FAST * STEP_S * too_fast_mps - (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
 
     def close(self):
         self.worlds.close()
@@ -160,7 +162,7 @@ class Curve(BaseCallback):
         self.worlds.comfort = min(1.0, max(0.0, (done - ROUGH_SHARE) / COMFORT_SHARE))
         self.rollouts += 1
         tried = ""
-        if self.rollouts % TRIED_EVERY == 0 or self.num_timesteps >= self.actions:
+        if (self.worlds.comfort == 1.0 and self.rollouts % TRIED_EVERY == 0) or done >= 1.0:
             tried = f"{self._try():.2f}"
         ended, self.worlds.ended = self.worlds.ended, []
         means = [f"{mean:.3f}" for mean in np.mean(ended, axis=0)] if ended else ["", "", ""]
@@ -224,7 +226,7 @@ def draw_curve(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--actions", type=int, default=3_000_000, help="of all worlds together")
+    parser.add_argument("--actions", type=int, default=1_500_000, help="of all worlds together")
     parser.add_argument("--worlds", type=int, default=256)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--output", type=Path, default=Path("ppo"))

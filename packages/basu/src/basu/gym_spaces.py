@@ -48,7 +48,7 @@ class Reward:
     infraction: float = -10.0  # for an infraction of the thesis's: collisions, lights, stop signs, speeding
     arrival: float = 10.0  # for the end of the route
     failure: float = -10.0  # for leaving the route, or standing still for too long
-    discomfort: float = -0.4  # for a second with 1 m/s² more than standing passengers balance without a step
+    discomfort: float = -0.3  # for a second with 1 m/s² more than standing passengers balance without a step
     offset: float = -0.2  # for a second 1 m off the middle of the planned lane
 
     def parts(
