@@ -17,6 +17,7 @@ import gymnasium
 import numpy as np
 from gymnasium.wrappers import FilterObservation, FlattenObservation
 from matplotlib.figure import Figure
+from mlp_policy import Policy, write_policy
 
 from basu.agents.builtin.basic import BasicAgent
 from basu.gym import Reward, ShuttleEnv
@@ -27,7 +28,6 @@ TRAINING, UNSEEN = ("train_1", "train_2", "train_3", "train_4"), ("unseen_1", "u
 BASELINE = Path(__file__).with_name("sb3_baseline") / "policy.npz"
 HELD_STEPS = 4  # a policy acts every 0.2 s
 OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.5, 50
-LAYERS = ("mlp_extractor.policy_net.0", "mlp_extractor.policy_net.2", "action_net")
 COLUMNS = ("actions", "episode_return", "route_share", "passed")  # of curve.csv, a row for each episode of training
 AVERAGED = 40  # episodes
 COLLISIONS = {Infraction.COLLISION_PEDESTRIAN, Infraction.COLLISION_VEHICLE, Infraction.COLLISION_STATIC}
@@ -116,13 +116,6 @@ def note_ends(rows, actions, infos):
     return True
 
 
-def write_policy(path, model, environments):
-    """Write the weights of the policy, and mean and variance of observations, as plain arrays without pickles."""
-    weights = {name: values.numpy() for name, values in model.policy.state_dict().items() if name.startswith(LAYERS)}
-    seen = environments.obs_rms
-    np.savez_compressed(path, mean=seen.mean.astype(np.float32), var=seen.var.astype(np.float32), **weights)
-
-
 def draw_curve(folder):
     """Draw curve.png from curve.csv: each episode of training, and the mean of the last 40."""
     columns = np.genfromtxt(folder / "curve.csv", delimiter=",", names=True, ndmin=1)
@@ -142,22 +135,6 @@ def draw_curve(folder):
 
 
 # -- comparing
-
-
-class Policy:
-    """A trained policy in numpy: normalised observations, two hidden layers, and the mean action."""
-
-    def __init__(self, path):
-        with np.load(path, allow_pickle=False) as kept:
-            self.mean, self.deviation = kept["mean"], np.sqrt(kept["var"] + 1e-8)
-            self.layers = [(kept[f"{name}.weight"], kept[f"{name}.bias"]) for name in LAYERS]
-
-    def __call__(self, seen):
-        values = np.clip((seen - self.mean) / self.deviation, -10.0, 10.0)
-        for weight, bias in self.layers[:-1]:
-            values = np.tanh(weight @ values + bias)
-        weight, bias = self.layers[-1]
-        return np.clip(weight @ values + bias, -1.0, 1.0).astype(np.float32)
 
 
 def built_in(env):

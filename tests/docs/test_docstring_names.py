@@ -7,7 +7,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-import linden.cli
+import linden.cli.compiling
 from basu import plugins
 
 ROOT = Path(__file__).parents[2]
@@ -16,7 +16,7 @@ PACKAGES = "|".join(path.name for source in SOURCES for path in source.iterdir()
 NAME = re.compile(rf"`{{1,2}}~?((?:{PACKAGES})(?:\.[A-Za-z_]\w*)+)(?:\(\))?`")
 
 
-GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS}
+GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS, linden.cli.compiling.PLUGINS}
 """Of entry points; no modules."""
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import linden.cli
+import linden.cli.compiling
 from basu import plugins
 from docs.pages import INLINE, PAGES, ROOT, without_fences
 
@@ -18,7 +18,7 @@ PACKAGES = "|".join(path.parent.name for path in ROOT.glob("packages/*/src/*/__i
 MODULE = re.compile(rf"(?<![\w./-])((?:{PACKAGES})(?:\.\w+)+)(?!\.?[\w/])")
 PART = re.compile(r"^(?:\w+/)+\w+\.(?:py|json|geojson|xodr|md)$")
 OTHERS = "outside-programs.md"  # names files of other programs
-GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS}
+GROUPS = {*plugins.DISTRIBUTIONS, plugins.SCENARIO_FILES, linden.cli.PLUGINS, linden.cli.compiling.PLUGINS}
 """Of entry points; no modules."""
 FILES = (".osm", ".pcd", ".xml", ".xodr")  # ends of names of files, not of modules
 

@@ -76,7 +76,9 @@ def test_the_nearest_road_user_comes_first(simulator: RunningServer) -> None:
 
 
 def test_progress_is_rewarded_and_time_costs(simulator: RunningServer) -> None:
-    env = ShuttleEnv(reward=Reward(progress=1.0, time=-2.0), host="127.0.0.1", port=simulator.port)
+    env = ShuttleEnv(
+        reward=Reward(progress=1.0, time=-2.0, discomfort=0.0, offset=0.0), host="127.0.0.1", port=simulator.port
+    )
     try:
         env.reset(seed=0)
         stands = env.step(np.array([-1.0, 0.0], np.float32))
@@ -153,7 +155,15 @@ def test_the_parts_of_the_reward_add_up(env: ShuttleEnv) -> None:
     env.reset(seed=0)
     for _ in range(20):
         _, reward, _, _, info = env.step(GENTLE)
-        assert set(info["reward_parts"]) == {"progress", "time", "infraction", "arrival", "failure"}
+        assert set(info["reward_parts"]) == {
+            "progress",
+            "time",
+            "infraction",
+            "arrival",
+            "failure",
+            "discomfort",
+            "offset",
+        }
         assert sum(info["reward_parts"].values()) == reward
 
 

@@ -1,6 +1,7 @@
 """Claims about the example with Stable-Baselines3: it trains, its policy needs numpy alone, and the baseline drives."""
 
 import runpy
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ BASELINE = ROOT / "examples" / "sb3_baseline"
 
 @pytest.fixture(scope="module")
 def example() -> dict[str, Any]:
+    sys.path.append(str(ROOT / "examples"))  # it imports a file beside it
     return runpy.run_path(str(ROOT / "examples" / "sb3_training.py"))
 
 

@@ -45,6 +45,13 @@ def towards_route(cruise_mps: float, weave: float = 0.0) -> Driver:
     return act
 
 
+def stopping(step: int, seen: dict[str, NDArray[np.float32]]) -> NDArray[np.float32]:
+    """A driver that stops at stop signs, and goes on once they are no longer shown."""
+    is_near, to_line_m = seen["stop_sign"]
+    cruise_mps = min(8.0, math.sqrt(max(0.0, 3.0 * (to_line_m - 0.5)))) if is_near else 8.0
+    return towards_route(cruise_mps)(step, seen)
+
+
 def at_random(step: int, _seen: object) -> NDArray[np.float32]:
     """Random pedals and steer, new ones each second."""
     return np.random.default_rng(step // 20).uniform([-0.3, -0.5], [1.0, 0.5]).astype(np.float32)
@@ -57,6 +64,7 @@ def at_random(step: int, _seen: object) -> NDArray[np.float32]:
         pytest.param(towards_route(16.0), 2000, "Completed", 1, id="too fast, to the end"),
         pytest.param(towards_route(8.0, 0.35), 3000, "RouteDeviation", 0, id="weaving through lanes"),
         pytest.param(lambda _step, _seen: np.array(OFF_ROAD, np.float32), 400, "RouteDeviation", 0, id="off the road"),
+        pytest.param(stopping, 1500, None, 0, id="with a stop"),
         pytest.param(at_random, 400, None, 0, id="at random"),
     ],
 )

@@ -11,6 +11,8 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 - ``ego`` (6,): speed; acceleration forward, m/s²; yaw rate, clockwise; offset from the route, positive to the right;
   heading less the route's; posted limit, 0 where there is none.
 - ``route`` (10, 2): x, y of the route's points 5, 10, ..., 50 m ahead; the last point again behind its end.
+- ``stop_sign`` (2,): 1, and the way from the front bumper to the line of the next stop sign, negative beyond the line.
+  Zeros if none is within 60 m, or if the vehicle has stopped there by the rule of `basu.metrics.stop_signs`.
 - ``others`` (8, 6): the nearest vehicles, walkers and things on the road within 60 m, nearest first: 1, x, y, heading
   less ours, velocity x, y. Rows of zeros where there are fewer.
 

@@ -12,13 +12,22 @@ import numpy as np
 
 from basu.conditions import STEP_S
 from basu.errors import UserError
+from basu.managers.observations import vehicle_of
+from basu.metrics.passengers.felt import STEP_MPS2
+from basu.metrics.stop_signs import stops_at
 from basu.outcome import Status
+from basu.routing import ControlKind
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from basu.episode import Observation, VehicleUnderTest
+    from basu.records.history import Vehicle
+    from basu.records.motion import VehicleMotion
     from basu.routing import Route
+    from basu.routing.planned_route import Progress
 
 JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
 TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
@@ -39,15 +48,31 @@ class Reward:
     infraction: float = -10.0  # for an infraction of the thesis's: collisions, lights, stop signs, speeding
     arrival: float = 10.0  # for the end of the route
     failure: float = -10.0  # for leaving the route, or standing still for too long
+    discomfort: float = -0.3  # for a second with 1 m/s² more than standing passengers balance without a step
+    offset: float = -0.2  # for a second 1 m off the middle of the planned lane
 
-    def parts(self, driven_m: Any, infractions: Any, arrived: Any, failed: Any) -> dict[str, Any]:  # noqa: ANN401
-        """Return the parts of a step's reward by field; for numbers, and for arrays of many environments."""
+    def parts(
+        self,
+        driven_m: Any,  # noqa: ANN401 - all are numbers or arrays
+        infractions: Any,  # noqa: ANN401
+        arrived: Any,  # noqa: ANN401
+        failed: Any,  # noqa: ANN401
+        push_mps2: Any,  # noqa: ANN401
+        lateral_m: Any,  # noqa: ANN401
+    ) -> dict[str, Any]:
+        """Return the parts of a step's reward by field; for numbers, and for arrays of many environments.
+
+        ``push_mps2`` is the horizontal acceleration of the vehicle in the step's last frame, ``lateral_m`` its offset
+        from the route.
+        """
         return {
             "progress": self.progress * driven_m,
             "time": self.time * STEP_S,
             "infraction": self.infraction * infractions,
             "arrival": self.arrival * arrived,
             "failure": self.failure * failed,
+            "discomfort": self.discomfort * STEP_S * np.maximum(0.0, push_mps2 - STEP_MPS2),
+            "offset": self.offset * STEP_S * np.abs(lateral_m),
         }
 
 
@@ -56,20 +81,51 @@ class Preview:
 
     def __init__(self, vehicle: VehicleUnderTest) -> None:
         self._vehicle = vehicle
-        self._ahead = RouteAhead(vehicle.run.route)
+        self._view = DriversView(vehicle.run.route, vehicle_of(vehicle.run.vehicle))
 
     def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
-        """Return the observation of a frame."""
+        """Return the observation of the next frame."""
         limit_mps = self._vehicle.run.vehicle.get_speed_limit() / 3.6
-        rows = self._vehicle.metrics.others(seen.frame)
-        others = np.array([row[2:] for row in rows], np.float64).reshape(1, -1, 6)
+        others = [row[2:] for row in self._vehicle.metrics.others(seen.frame)]
+        return self._view.of(seen.frame.ego, seen.progress, limit_mps, others, in_lane=seen.in_lane)
+
+
+class DriversView:
+    """Makes the observations of one drive, frame by frame, and remembers at which signs the vehicle has stopped."""
+
+    def __init__(self, route: Route, vehicle: Vehicle) -> None:
+        self._ahead = RouteAhead(route, vehicle)
+        self._stopped = np.zeros((1, len(self._ahead.signs_m)), np.bool_)
+
+    def of(
+        self,
+        ego: VehicleMotion,
+        progress: Progress,
+        limit_mps: float,
+        others: Sequence[Sequence[float]],
+        *,
+        in_lane: bool,
+    ) -> dict[str, NDArray[np.float32]]:
+        """Return the observation of the next frame.
+
+        Args:
+            ego: the motion of the vehicle.
+            progress: its place along the route.
+            limit_mps: what is posted to it; 0 for none.
+            others: x, y, z, yaw, velocity x and y of each road user near it, CARLA's frame.
+            in_lane: whether it is on its route, so that a stop counts (`basu.metrics.validity`).
+        """
+        rows = EgoRows(*(np.array([getattr(ego, name)]) for name in EgoRows._fields))
+        s_m, table = np.array([progress.s_m]), np.array(others, np.float64).reshape(1, -1, 6)
+        self._stopped |= stops_at(self._ahead.to_signs_m(s_m), rows.speed_mps[:, None], in_lane)
         many = self._ahead.observed(
-            EgoRows(*(np.array([getattr(seen.frame.ego, name)]) for name in EgoRows._fields)),
-            np.array([seen.progress.s_m]),
-            np.array([seen.progress.lateral_m]),
+            rows,
+            s_m,
+            np.array([progress.lateral_m]),
             np.array([limit_mps]),
-            others,
-            np.ones(others.shape[:2], np.bool_),
+            table,
+            np.ones(table.shape[:2], np.bool_),
+            self._stopped,
         )
         return {name: values[0] for name, values in many.items()}
 
@@ -95,11 +151,24 @@ class EgoRows(NamedTuple):
         )
         return speed_mps
 
+    @property
+    def push_mps2(self) -> NDArray[np.float64]:
+        """(E,) horizontal accelerations."""
+        push_mps2: NDArray[np.float64] = np.sqrt(self.acceleration_x_mps2**2 + self.acceleration_y_mps2**2)
+        return push_mps2
+
 
 class RouteAhead:
-    """Makes observations of vehicles on one route."""
+    """Makes observations of vehicles on one route.
 
-    def __init__(self, route: Route) -> None:
+    Attributes:
+        signs_m: (S,) places of the lines of the stop signs along the route.
+    """
+
+    def __init__(self, route: Route, vehicle: Vehicle) -> None:
+        """Take the route, and the box of the vehicles."""
+        self.signs_m = np.array([control.s_m for control in route.controls if control.kind is ControlKind.STOP_SIGN])
+        self._front_m, self._half_m = vehicle.front_m, (vehicle.front_m + vehicle.rear_m) / 2.0
         self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
         self._yaw_rad = np.unwrap(route.yaw_rad)
         self._ahead_m = PREVIEW_M * np.arange(1, PREVIEW_POINTS + 1)
@@ -113,6 +182,7 @@ class RouteAhead:
         limit_mps: NDArray[np.float64],
         others: NDArray[np.float64],
         is_there: NDArray[np.bool_],
+        stopped: NDArray[np.bool_],
     ) -> dict[str, NDArray[np.float32]]:
         """Return the observations of E vehicles, each array with E as its first axis.
 
@@ -123,6 +193,7 @@ class RouteAhead:
             limit_mps: (E,) what is posted to them; 0 for none.
             others: (E, K, 6) x, y, z, yaw, velocity x and y of the road users near each, CARLA's frame.
             is_there: (E, K) whether a row of ``others`` counts.
+            stopped: (E, S) whether each has stopped at each sign until now, by `stops_at`.
         """
         cos, sin = np.cos(ego.yaw_rad), np.sin(ego.yaw_rad)
         at_m = s_m[:, None] + self._ahead_m
@@ -134,8 +205,24 @@ class RouteAhead:
             "ego": np.stack(state, axis=-1),
             "route": _in_frame(x_m, y_m, ego, cos, sin),
             "others": self._others(ego, cos, sin, others, is_there),
+            "stop_sign": self._next_sign(s_m, stopped),
         }
         return {name: _clipped(values, self._boxes[name]) for name, values in found.items()}
+
+    def to_signs_m(self, s_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return (E, S) the way from the front bumpers of vehicles at ``s_m`` to the lines, negative beyond them."""
+        ahead_m: NDArray[np.float64] = self.signs_m - (s_m[:, None] + self._front_m)
+        return ahead_m
+
+    def _next_sign(self, s_m: NDArray[np.float64], stopped: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Return (E, 2) 1 and the way to the next line at which the vehicle has to stop; zeros where none is near."""
+        if not len(self.signs_m):
+            return np.zeros((len(s_m), 2))
+        ahead_m = self.to_signs_m(s_m)
+        due = ~stopped & (ahead_m >= -self._half_m) & (ahead_m <= FARTHEST_M)
+        nearest_m = np.where(due, ahead_m, np.inf).min(axis=1)
+        there = np.isfinite(nearest_m)
+        return np.stack([there, np.where(there, nearest_m, 0.0)], axis=-1)
 
     @staticmethod
     def _others(
@@ -253,6 +340,7 @@ def _boxes() -> dict[str, gymnasium.spaces.Box]:
         "ego": _symmetric(np.array(ego)),
         "route": _symmetric(np.full((PREVIEW_POINTS, 2), far)),
         "others": _symmetric(np.tile(other, (OTHERS, 1))),
+        "stop_sign": _symmetric(np.array([1.0, far])),
     }
 
 

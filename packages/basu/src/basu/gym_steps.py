@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from basu.gym_spaces import FAILED, JUDGED_TICKS, TRUNCATED, Preview
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.episode import Episode, VehicleUnderTest
+    from basu.episode import Episode, Observation, VehicleUnderTest
     from basu.gym_spaces import Reward
     from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
@@ -44,7 +45,7 @@ class JudgedSteps:
         if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
             found = vehicle.metrics.infractions_so_far()
             new, self._infractions = found[self._infractions :], len(found)
-        parts = self._parts(seen.driven_m - self._driven_m, len(new), outcome)
+        parts = self._parts(seen, len(new), outcome)
         self._driven_m = seen.driven_m
         info: dict[str, Any] = {"route_s_m": seen.progress.s_m, "infractions": new, "reward_parts": parts}
         if outcome is not None:
@@ -64,7 +65,14 @@ class JudgedSteps:
             said = success(outcome, history, found, results_of(playing, history, outcome))
         return said._asdict()
 
-    def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
+    def _parts(self, seen: Observation, infractions: int, outcome: Outcome | None) -> dict[str, float]:
         """Return the parts of a step's reward, by the names of `Reward`'s fields."""
-        status = None if outcome is None else outcome.status
-        return self._reward.parts(driven_m, infractions, status is Status.COMPLETED, status in FAILED)
+        status, ego = None if outcome is None else outcome.status, seen.frame.ego
+        return self._reward.parts(
+            driven_m=seen.driven_m - self._driven_m,
+            infractions=infractions,
+            arrived=status is Status.COMPLETED,
+            failed=status in FAILED,
+            push_mps2=math.hypot(ego.acceleration_x_mps2, ego.acceleration_y_mps2),
+            lateral_m=seen.progress.lateral_m,
+        )

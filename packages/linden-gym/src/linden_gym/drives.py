@@ -12,16 +12,14 @@ from basu.metrics.delays import time_limit_s
 from basu.metrics.ending import GOES_ON
 from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.speeding import exceeds, holding_mps, is_whole, lasts
-from basu.metrics.stop_signs import in_zone
+from basu.metrics.stop_signs import stops_at
 from basu.metrics.validity import PlannedLanes, widths_m
-from basu.routing import ControlKind
-from basu.thresholds import AT_REST_MPS
 from linden_gym.following import begun, judge, locate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.gym_spaces import EgoRows
+    from basu.gym_spaces import EgoRows, RouteAhead
     from basu.records.history import Vehicle
     from basu.routing import Route
     from linden_gym.lane_field import LaneField
@@ -42,21 +40,21 @@ class Drives:
     Attributes:
         table: records of `linden_gym.following.DRIVE` (W,).
         infractions: (W,) how many each drive has had until its latest frame.
+        stopped: (W, S) whether each vehicle has stopped at each stop sign of the route.
     """
 
-    def __init__(self, count: int, route: Route, lanes: LaneField, vehicle: Vehicle) -> None:
+    def __init__(self, count: int, route: Route, ahead: RouteAhead, lanes: LaneField, vehicle: Vehicle) -> None:
         self._route, self._field, self._lanes = route, lanes, PlannedLanes(route)
         self._points_m = np.ascontiguousarray(route.points_m)
         self._widths_m = widths_m(route)
         self._limit_s = time_limit_s(route)
-        self._front_m, self._rear_m = vehicle.front_m, vehicle.rear_m
-        signs = [control.s_m for control in route.controls if control.kind is ControlKind.STOP_SIGN]
-        self._signs_m = np.array(signs, np.float64)
+        self._ahead = ahead
+        self._middle_m = (vehicle.front_m - vehicle.rear_m) / 2.0
         self.table = begun(count)
         self.infractions = np.zeros(count, np.int64)
         self._speeding = np.zeros(count, EPISODE)
         self._settled = np.zeros(count, np.int64)  # infractions that can change no more
-        self._stopped, self._passed = (np.zeros((count, len(signs)), np.bool_) for _ in range(2))
+        self.stopped, self._passed = (np.zeros((count, len(ahead.signs_m)), np.bool_) for _ in range(2))
         self._touched = np.full((count, SCENERY_KINDS + 1), LONG_AGO, np.int64)
 
     def begin(self, rows: NDArray[np.int64]) -> None:
@@ -64,7 +62,7 @@ class Drives:
         self.table[rows] = begun(len(rows))
         self.infractions[rows], self._settled[rows] = 0, 0
         self._speeding[rows] = np.zeros((), EPISODE)
-        self._stopped[rows], self._passed[rows] = False, False
+        self.stopped[rows], self._passed[rows] = False, False
         self._touched[rows] = LONG_AGO
 
     @property
@@ -143,12 +141,11 @@ class Drives:
     def _signs_run(self, rows: NDArray[np.int64], speed_mps: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return (K,) how many stop signs the vehicles pass in the frame without having stopped."""
         drives = self.table[rows]
-        ahead_m = self._signs_m - (drives["s_m"] + self._front_m)[:, None]
-        rests = drives["in_lane"] & (speed_mps < AT_REST_MPS)
-        stopped = self._stopped[rows] | (rests[:, None] & in_zone(ahead_m))
-        beyond = (drives["s_m"] + (self._front_m - self._rear_m) / 2.0)[:, None] > self._signs_m
+        ahead_m = self._ahead.to_signs_m(drives["s_m"])
+        stopped = self.stopped[rows] | stops_at(ahead_m, speed_mps[:, None], drives["in_lane"][:, None])
+        beyond = (drives["s_m"] + self._middle_m)[:, None] > self._ahead.signs_m
         passes = beyond & ~self._passed[rows] & (drives["tick"] > 0)[:, None]
-        self._stopped[rows] = stopped
+        self.stopped[rows] = stopped
         self._passed[rows] |= beyond
         run: NDArray[np.int64] = (passes & ~stopped).sum(axis=1)
         return run

@@ -113,9 +113,10 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._reward = Reward() if reward is None else reward
-        self._ahead = RouteAhead(self.route)
+        box = self._box()
+        self._ahead = RouteAhead(self.route, box)
         lanes = LaneField(carla_map, self.worlds.map, self.route.points_m)
-        self._drives = Drives(num_envs, self.route, lanes, self._box())
+        self._drives = Drives(num_envs, self.route, self._ahead, lanes, box)
         self._all: NDArray[np.int64] = np.arange(num_envs, dtype=np.int64)
         self._over = np.ones(num_envs, np.bool_)  # environments with no episode
         self._reported = np.zeros(num_envs, np.int64)  # infractions
@@ -134,9 +135,9 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self.worlds.keep()
 
     def _box(self) -> Vehicle:
-        """Return the box of the vehicle under test as records have it."""
+        """Return the box of the vehicle under test as records have it, of numbers of 32 bits."""
         body = self.worlds.state[0, EGO]
-        (x_m, _, _), (half_m, side_m, _) = body["box_centre"].tolist(), body["half_extent"].tolist()
+        (x_m, _, _), (half_m, side_m, _) = (_single(body[name]).tolist() for name in ("box_centre", "half_extent"))
         return Vehicle(type_id="", front_m=x_m + half_m, rear_m=half_m - x_m, width_m=2.0 * side_m)
 
     # -- gymnasium
@@ -217,7 +218,14 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         new = np.where(looked, np.maximum(0, known - self._reported), 0)
         self._reported[looked] = known[looked]
         ending = drives.table["ending"]
-        parts = self._reward.parts(drives.driven_m - driven_m, new, ending == ARRIVED, _FAILED[ending])
+        parts = self._reward.parts(
+            driven_m=drives.driven_m - driven_m,
+            infractions=new,
+            arrived=ending == ARRIVED,
+            failed=_FAILED[ending],
+            push_mps2=self._motion.push_mps2,
+            lateral_m=drives.table["lateral_m"],
+        )
         parts = {name: np.where(drove, np.broadcast_to(values, drove.shape), 0.0) for name, values in parts.items()}
         infos: Infos = {}
         every = np.ones_like(drove)
@@ -298,7 +306,15 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         """Return the observations of environments (K,)."""
         drives, ego = self._drives.table[rows], self._ego(rows)
         others, is_there = self._others(rows, ego)
-        return self._ahead.observed(ego, drives["s_m"], drives["lateral_m"], self._posted_mps(rows), others, is_there)
+        return self._ahead.observed(
+            ego,
+            drives["s_m"],
+            drives["lateral_m"],
+            self._posted_mps(rows),
+            others,
+            is_there,
+            self._drives.stopped[rows],
+        )
 
     def _others(self, rows: NDArray[np.int64], ego: EgoRows) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Return the bodies beside the vehicle as rows of `RouteAhead.observed`, and which of them count.

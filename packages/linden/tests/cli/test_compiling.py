@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -41,7 +42,18 @@ def test_a_group_that_cannot_be_compiled_is_named(
     assert main(["compile"]) == 2
     said = capsys.readouterr()
     assert said.err == "linden: could not compile rays; the messages stand above\n"
-    assert said.out.count("compiled kernels") == len(compiling.GROUPS) - 1
+    groups = len(compiling.GROUPS) + len(compiling._of_plugins())
+    assert said.out.count("compiled kernels") == groups - 1
+    assert f"of {groups}: driving" in said.out
+
+
+def test_a_plugin_brings_a_group(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    order: list[str] = []
+    brought = SimpleNamespace(name="theirs", load=lambda: lambda: order.append("theirs"))
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [brought] if group == "linden.kernels" else [])
+    compile_groups(["theirs"])
+    assert order == ["theirs"]
+    assert capsys.readouterr().out == "theirs\n"
 
 
 def test_a_first_start_prints_each_step_and_ends_what_it_began(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -69,6 +69,7 @@ class Observation(NamedTuple):
     sensor_data: dict[str, tuple[int, Any]]  # the latest measurement of each sensor, with its frame
     progress: Progress  # along the route
     driven_m: float  # of the route, validly
+    in_lane: bool  # whether place and direction are those of the route
 
 
 class Answer(NamedTuple):
@@ -167,7 +168,10 @@ class VehicleUnderTest:
         frame = frame_in(snapshot, tick, self.run)
         self._sensors.tick(frame)
         self.routes.tick(frame)
-        self._observation = Observation(frame, self._sensors.data, self.routes.progress, self.routes.valid.driven_m)
+        routes = self.routes
+        self._observation = Observation(
+            frame, self._sensors.data, routes.progress, routes.valid.driven_m, routes.valid.check.in_lane
+        )
         self._is_recorded = False
 
     def take(self, answer: Answer) -> None:

@@ -19,9 +19,27 @@ from basu.routing.planned_route import Progress, advance
 from basu.routing.weather import weather_at
 
 if TYPE_CHECKING:
-    from basu.managers.base_manager import Frame, Run
+    from basu.managers.base_manager import Ego, Frame, Run
+    from basu.managers.observations import LaneUnder
 
 WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather along the route
+
+
+def moment_at(ego: Ego, progress: Progress, lane: LaneUnder) -> Moment:
+    """Return what decides about a frame: the vehicle's motion, its place along the route, and the lane under it."""
+    return Moment(
+        route_s_m=progress.s_m,
+        lateral_m=progress.lateral_m,
+        x_m=ego.x_m,
+        y_m=ego.y_m,
+        yaw_rad=ego.yaw_rad,
+        velocity_x_mps=ego.velocity_x_mps,
+        velocity_y_mps=ego.velocity_y_mps,
+        road_id=lane.road_id,
+        lane_id=lane.lane_id,
+        in_junction=lane.in_junction,
+        off_lane_m=lane.off_lane_m,
+    )
 
 
 class RoutesManager(BaseManager):
@@ -59,21 +77,7 @@ class RoutesManager(BaseManager):
         ego = frame.ego
         self.progress = advance(self._route, self.progress, ego.x_m, ego.y_m)
         self.lane = lane = self._lanes.under(ego)
-        self.valid.step(
-            Moment(
-                route_s_m=self.progress.s_m,
-                lateral_m=self.progress.lateral_m,
-                x_m=ego.x_m,
-                y_m=ego.y_m,
-                yaw_rad=ego.yaw_rad,
-                velocity_x_mps=ego.velocity_x_mps,
-                velocity_y_mps=ego.velocity_y_mps,
-                road_id=lane.road_id,
-                lane_id=lane.lane_id,
-                in_junction=lane.in_junction,
-                off_lane_m=lane.off_lane_m,
-            )
-        )
+        self.valid.step(moment_at(ego, self.progress, lane))
         speed_mps = ego.speed_mps
         if speed_mps >= BLOCKED_MPS:
             self._moved_tick = frame.tick

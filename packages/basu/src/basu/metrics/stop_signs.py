@@ -81,6 +81,11 @@ def in_zone(ahead_m: NDArray[np.float64]) -> NDArray[np.bool_]:
     return within
 
 
+def stops_at(ahead_m: Any, speed_mps: Any, in_lane: Any) -> Any:  # noqa: ANN401 - numbers or arrays
+    """Return whether a vehicle stops at a line: ``ahead_m`` from the front bumper, ``in_lane`` if on its route."""
+    return in_zone(ahead_m) & (speed_mps < AT_REST_MPS) & in_lane
+
+
 def stop_signs(history: History) -> tuple[Evidence, ...]:
     """One infraction for each stop sign that was run."""
     return tuple(

@@ -1,0 +1,241 @@
+"""Train a driver of the short route by PPO of Stable-Baselines3, in many worlds of this process.
+
+usage: python examples/ppo_training.py [--actions 1500000] [--worlds 256] [--seed 0] [--output ppo]
+
+It needs ``pip install linden-gym 'basu[sb3]'``, and writes policy.npz, curve.csv and curve.png. Then
+``PPO_POLICY=ppo/policy.npz basu run examples/ppo_agent.py`` drives the policy through the server, as any agent.
+
+The same seed gives the same policy on the same machine. The reward is that of the environment, and two things help to
+learn it. The weights of discomfort and offset grow from 0 to their own values, because a driver that still tries at
+random is never comfortable, and would learn to stand. Driving too fast to stop at a stop sign costs something long
+before the line. A driver that stops there in comfort pays nothing.
+PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".
+"""
+
+import argparse
+import csv
+import time
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import torch
+from matplotlib.figure import Figure
+from mlp_policy import Policy, write_policy
+from ppo_agent import HELD_STEPS, Driver, rows, smoothed
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.vec_env import VecEnv, VecNormalize
+
+from basu.conditions import STEP_S
+from basu.gym import Reward
+from linden_gym import ID
+
+OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 100
+ROUGH_SHARE, COMFORT_SHARE = 0.2, 0.4  # of the training without these weights, and while they grow
+TOO_FAST = -0.5  # for a second with 1 m/s more than `fastest_mps`
+BRAKING_MPS2, BEFORE_LINE_M = 0.8, 1.0
+GAMMA = 0.995
+SETTINGS = {"n_steps": 64, "batch_size": 2048, "n_epochs": 6, "gamma": GAMMA, "policy_kwargs": {"log_std_init": -0.7}}
+FASTEST_LEARNING, SLOWEST_LEARNING = 6e-4, 3e-5
+TRIED_EVERY = 5  # rollouts, from one drive without chance to the next, once the reward is whole
+COLUMNS = ("actions", "episodes", "episode_return", "route_share", "infractions", "tried_return", "seconds")
+
+
+# -- the task
+
+
+def fastest_mps(to_line_m):
+    """Return the speed at which a vehicle can still come to rest before the line of a stop sign, in comfort."""
+    return np.sqrt(2.0 * BRAKING_MPS2 * np.maximum(0.0, to_line_m - BEFORE_LINE_M))
+
+
+class TrainingWorlds(VecEnv):
+    """The environments `linden/Shuttle-v0` as Stable-Baselines3 wants them; an action holds for `HELD_STEPS` steps.
+
+    To save time, an episode ends as a failure once the vehicle has left its lane, stands for 20 s, or commits an
+    infraction. ``ended`` has the return, the share of the route and the infractions of each episode that ended.
+    """
+
+    render_mode = None
+
+    def __init__(self, count, reward):
+        self.worlds = gymnasium.make_vec(ID, num_envs=count, autoreset_mode="Disabled", reward=reward)
+        self.length_m, self.failure = self.worlds.unwrapped.route.length_m, reward.failure
+        self.comfort, self.ended = 0.0, []
+        space = gymnasium.spaces.Box(-np.inf, np.inf, rows(*self._begun(count)).shape[1:], np.float32)
+        super().__init__(count, space, self.worlds.single_action_space)
+
+    def _begun(self, count):
+        self.returns, self.infractions, self.stood = (np.zeros(count) for _ in range(3))
+        self.applied = np.zeros((count, 2), np.float32)
+        return self.worlds.reset()[0], self.applied
+
+    def reset(self):
+        return rows(*self._begun(self.num_envs))
+
+    def step_async(self, actions):
+        self.applied = smoothed(self.applied, actions)
+
+    def step_wait(self):
+        rewards, over = np.zeros(self.num_envs), np.zeros(self.num_envs, np.bool_)
+        infos = [{} for _ in range(self.num_envs)]
+        for _ in range(HELD_STEPS):
+            seen, reward, terminated, truncated, told = self.worlds.step(self.applied)
+            speed_mps, offset_m = seen["ego"][:, 0], seen["ego"][:, 3]
+            self.stood = np.where(speed_mps < STANDING_MPS, self.stood + 1, 0)
+            gives_up = (np.abs(offset_m) > OFF_LANE_M) | (self.stood > STANDING_ACTIONS * HELD_STEPS)
+            gives_up |= told["infractions"] > 0
+            gives_up &= ~(terminated | truncated)
+            reward = reward + self._help(seen, told) + np.where(gives_up, self.failure, 0.0)
+            rewards += np.where(over, 0.0, reward)  # what an action that goes on does at a new beginning is not counted
+            self.infractions += np.where(over, 0, told["infractions"])
+            ends = terminated | truncated | gives_up
+            if ends.any():
+                last = rows(seen, self.applied)
+                for row in np.flatnonzero(ends & ~over):
+                    infos[row] = {"terminal_observation": last[row], "TimeLimit.truncated": bool(truncated[row])}
+                    share = told["route_s_m"][row] / self.length_m
+                    self.ended.append((self.returns[row] + rewards[row], share, self.infractions[row]))
+                over |= ends
+                self.stood[ends] = 0
+                seen, _ = self.worlds.reset(options={"reset_mask": ends})
+        self.returns = np.where(over, 0.0, self.returns + rewards)
+        self.infractions[over], self.applied[over] = 0, 0.0
+        return rows(seen, self.applied), rewards, over, infos
+
+    def _help(self, seen, told):
+        """Return what the training adds to the reward of a step."""
+        is_near, to_line_m = seen["stop_sign"].T
+        too_fast_mps = is_near * np.maximum(0.0, seen["ego"][:, 0] - fastest_mps(to_line_m))
+        parts = told["reward_parts"]
+        return TOO_FAST * STEP_S * too_fast_mps - (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
+
+    def close(self):
+        self.worlds.close()
+
+    def get_attr(self, attr_name, indices=None):
+        return [getattr(self, attr_name) for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name, value, indices=None):
+        raise NotImplementedError("the worlds share their attributes; set them on the object itself")
+
+    def env_method(self, method_name, *args, indices=None, **settings):
+        raise NotImplementedError("the worlds are no objects; call methods of `worlds`")
+
+    def env_is_wrapped(self, wrapper_class, indices=None):
+        return [False for _ in self._get_indices(indices)]
+
+
+def drive(driver, reward, worlds=None):
+    """Drive one world to the end of its episode; return the parts of the return, the last info and the steps."""
+    worlds = worlds or gymnasium.make_vec(ID, num_envs=1, autoreset_mode="Disabled", reward=reward)
+    seen, _ = worlds.reset()
+    parts, steps, is_over = dict.fromkeys(reward.__slots__, 0.0), 0, False
+    while not is_over:
+        seen, _, terminated, truncated, told = worlds.step(driver(seen))
+        parts = {name: total + float(told["reward_parts"][name][0]) for name, total in parts.items()}
+        is_over, steps = bool(terminated[0] or truncated[0]), steps + 1
+    return parts, told, steps
+
+
+# -- training
+
+
+class Curve(BaseCallback):
+    """Writes a row of curve.csv after each rollout; at times the policy drives without chance, and the best is kept."""
+
+    def __init__(self, actions, worlds, reward, folder):
+        super().__init__()
+        self.actions, self.worlds, self.reward, self.folder = actions, worlds, reward, folder
+        self.trial = gymnasium.make_vec(ID, num_envs=1, autoreset_mode="Disabled", reward=reward)
+        self.rollouts, self.best, self.began_s = 0, -np.inf, time.perf_counter()
+        self.file = (folder / "curve.csv").open("w", newline="")
+        self.table = csv.writer(self.file)
+        self.table.writerow(COLUMNS)
+
+    def _on_step(self):
+        return True
+
+    def _on_rollout_end(self):
+        done = self.num_timesteps / self.actions
+        self.worlds.comfort = min(1.0, max(0.0, (done - ROUGH_SHARE) / COMFORT_SHARE))
+        self.rollouts += 1
+        tried = ""
+        if (self.worlds.comfort == 1.0 and self.rollouts % TRIED_EVERY == 0) or done >= 1.0:
+            tried = f"{self._try():.2f}"
+        ended, self.worlds.ended = self.worlds.ended, []
+        means = [f"{mean:.3f}" for mean in np.mean(ended, axis=0)] if ended else ["", "", ""]
+        row = [self.num_timesteps, len(ended), *means, tried, f"{time.perf_counter() - self.began_s:.1f}"]
+        self.table.writerow(row)
+        self.file.flush()
+        print("  ".join(f"{name} {value}" for name, value in zip(COLUMNS, row, strict=True) if value != ""), flush=True)
+
+    def _try(self):
+        """Drive the policy once by its mean actions, keep it if it is the best one, and return its return."""
+        path = self.folder / "tried.npz"
+        write_policy(path, self.model, self.model.get_vec_normalize_env())
+        parts, _, _ = drive(Driver(Policy(path)), self.reward, self.trial)
+        total = sum(parts.values())
+        if total > self.best:
+            self.best = total
+            path.replace(self.folder / "policy.npz")
+        path.unlink(missing_ok=True)
+        return total
+
+    def _on_training_end(self):
+        self.file.close()
+
+
+def train(actions, count, seed, folder, reward=Reward(), **settings):  # noqa: B008 - frozen
+    """Train for so many actions of ``count`` worlds together; write policy.npz, curve.csv and curve.png."""
+    torch.set_num_threads(1)
+    folder.mkdir(parents=True, exist_ok=True)
+    worlds = TrainingWorlds(count, reward)
+    environments = VecNormalize(worlds, gamma=GAMMA)
+    usual = SETTINGS | {"learning_rate": lambda left: max(SLOWEST_LEARNING, FASTEST_LEARNING * left)}
+    model = PPO("MlpPolicy", environments, seed=seed, device="cpu", **usual | settings)
+    model.learn(actions, callback=Curve(actions, worlds, reward, folder))
+    draw_curve(folder)
+    return model
+
+
+def draw_curve(folder):
+    """Draw curve.png from curve.csv, over the actions with the seconds above, and return nothing."""
+    columns = np.genfromtxt(folder / "curve.csv", delimiter=",", names=True, ndmin=1)
+    actions, seconds = columns["actions"], columns["seconds"]
+    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
+    axes = figure.subplots(3, 1, sharex=True)
+    labels = ("return", "share of the route", "infractions")
+    for axis, name, label in zip(axes, COLUMNS[2:5], labels, strict=True):
+        axis.plot(actions, columns[name], color="0.55", label="mean of the episodes that ended, with chance")
+        axis.set(ylabel=label)
+        axis.grid(color="0.92")
+    tried = np.isfinite(columns["tried_return"])
+    axes[0].plot(
+        actions[tried], columns["tried_return"][tried], "o-", color="black", markersize=3, label="mean actions"
+    )
+    axes[0].legend(loc="lower right")
+    above = axes[0].secondary_xaxis(
+        "top", functions=(lambda x: np.interp(x, actions, seconds), lambda x: np.interp(x, seconds, actions))
+    )
+    above.set(xlabel="seconds of training")
+    axes[-1].set(xlabel=f"actions of all worlds together, {HELD_STEPS * STEP_S:g} s each")
+    figure.savefig(folder / "curve.png", dpi=110)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--actions", type=int, default=1_500_000, help="of all worlds together")
+    parser.add_argument("--worlds", type=int, default=256)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--output", type=Path, default=Path("ppo"))
+    given = parser.parse_args()
+    train(given.actions, given.worlds, given.seed, given.output)
+    parts, told, steps = drive(Driver(Policy(given.output / "policy.npz")), Reward())
+    shown = ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
+    print(f"{told['outcome'][0]} after {steps * STEP_S:.1f} s, return {sum(parts.values()):.2f}: {shown}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,13 @@
+"""The kernels of environments, for `linden compile`: a short drive compiles all that a step and a reset call."""
+
+import numpy as np
+
+from linden_gym.environment import WorldsVectorEnv
+
+
+def compile_environments() -> None:
+    """Compile the kernels of worlds and of environments, or load them from the cache."""
+    envs = WorldsVectorEnv(2)
+    envs.reset()
+    envs.step(np.zeros((2, 2), np.float32))
+    envs.reset(options={"reset_mask": np.array([True, False])})
