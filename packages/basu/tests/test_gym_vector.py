@@ -79,8 +79,8 @@ def test_no_worker_is_left_and_mistakes_are_one_sentence() -> None:
 
 def test_the_example_learns_to_drive(env: ShuttleVectorEnv, capsys: pytest.CaptureFixture[str]) -> None:
     training = runpy.run_path(str(EXAMPLE))
-    found = training["train"](env, generations=3, steps=40, seed=2)
-    assert found[-1][1] > found[0][1] + 0.03  # the mean of a generation
+    found = training["train"](env, generations=6, steps=40, seed=2)
+    assert found[-1][1] > found[0][1] + 0.06  # the mean of a generation
     standing = np.tile([0.0, -1.0, 0.0], (2, 1))  # a policy that brakes
-    assert found[-1][2] > training["returns_of"](env, standing, 40, 2).max() + 0.2
-    assert capsys.readouterr().out.count("generation") == 3
+    assert found[-1][2] > training["returns_of"](env, standing, 40, 2).max() + 0.1
+    assert capsys.readouterr().out.count("generation") == 6
