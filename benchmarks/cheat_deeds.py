@@ -60,7 +60,7 @@ class Deed(Honest):
                 print(f"deed of {type(self).__name__}: {came}", flush=True)
         return super().run_step(sensor_data)
 
-    def others(self) -> list[Any]:
+    def actors_around(self) -> list[Any]:
         """Return the other actors that move."""
         moving = [*self.world.get_actors().filter("vehicle.*"), *self.world.get_actors().filter("walker.*")]
         return [actor for actor in moving if actor.id != self.vehicle.id]
@@ -165,14 +165,14 @@ class ClearsTheRoad(Deed):
     """Destroys what is in its way."""
 
     def deed(self) -> str:
-        return str([actor.destroy() for actor in self.others()])
+        return str([actor.destroy() for actor in self.actors_around()])
 
 
 class MovesOthers(Deed):
     """Moves what is in its way."""
 
     def deed(self) -> None:
-        for actor in self.others():
+        for actor in self.actors_around():
             actor.set_location(carla.Location(0.0, 0.0, 300.0))
 
 
@@ -182,7 +182,7 @@ class StopsOthers(Deed):
     again = True
 
     def deed(self) -> None:
-        for actor in self.others():
+        for actor in self.actors_around():
             if "vehicle" in actor.type_id:
                 actor.apply_control(carla.VehicleControl(brake=1.0))
             else:
