@@ -80,7 +80,7 @@ def picture_of(folder: Path, frame: int) -> tuple[Image.Image, list[SeenObject],
 
 
 def drawn(folder: Path, frame: int, results: list[dict[str, object]]) -> Image.Image:
-    """Return the picture with the rectangles of pedestrians, and those that the detector found."""
+    """Return the picture with the rectangles of pedestrians and of detections."""
     picture, objects, row = picture_of(folder, frame)
     draw = ImageDraw.Draw(picture)
     for each in objects:

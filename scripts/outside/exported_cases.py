@@ -56,7 +56,7 @@ The distances are over all entities and all steps of 10 ms, in the plane. See [O
 
 
 class Line(NamedTuple):
-    """What came of a case."""
+    """The result of one case: whether it was written, and its distances from the rehearsal."""
 
     case: str
     scenario: str

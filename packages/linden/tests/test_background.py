@@ -43,7 +43,7 @@ def wait_until_returned() -> None:
 
 
 def test_memory_is_returned_after_the_last_work_and_not_after_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What work made is still held when it ends; memory that was returned at once came back to nobody."""
+    """What work made is still held when it ends, so the system gets no memory if it is returned at once."""
     wait_until_returned()  # for the tests before this one
     returned_s: list[float] = []
     library = SimpleNamespace(malloc_trim=lambda _: returned_s.append(time.monotonic()))

@@ -27,9 +27,9 @@ class Guard:
 
     node: Behaviour
     since_s: float
-    """When the tree began to ask."""
+    """When the tree first evaluates the trigger."""
     at_s: float
-    """When it came true."""
+    """When the trigger first holds."""
     before: Guard | None
     """The one that must come true first; None: the tree asks from the beginning."""
 

@@ -82,7 +82,7 @@ def read_detections(path: Path, truth: Truth) -> Detections:
 
 
 def _coco_results(document: Sequence[Any], path: Path, truth: Truth) -> Iterable[RectangleDetection]:
-    """Yield the results of COCO."""
+    """Yield the detections of a file of COCO results."""
     of_image = {number: key for key, number in image_ids(truth).items()}
     if not of_image:
         raise UserError(f"{path} has results for pictures, and the truth of {truth.run} has no camera")

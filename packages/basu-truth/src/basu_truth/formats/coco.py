@@ -37,7 +37,7 @@ class CocoWriter:
             write_picture(path, shot.measured[camera.id][camera.type_id])
 
     def finish(self, truth: Truth) -> None:
-        """Write the annotations."""
+        """Write the file of annotations of COCO."""
         document = coco_document(truth)
         write_bytes(self._folder / ANNOTATIONS_FILE, (json.dumps(document, separators=(",", ":")) + "\n").encode())
 

@@ -66,7 +66,7 @@ class KittiWriter:
         self._write("calib", f"{name}.txt", calibration(self._camera, self._lidar).encode())
 
     def finish(self, truth: Truth) -> None:
-        """Write nothing more."""
+        """End the export; each frame of KITTI has its files already."""
 
     def _write(self, kind: str, name: str, data: bytes) -> None:
         (self._folder / kind).mkdir(parents=True, exist_ok=True)

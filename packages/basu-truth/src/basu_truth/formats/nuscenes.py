@@ -99,7 +99,7 @@ class NuscenesWriter:
             write_bytes(path, np.column_stack([points, rings_of(measured)]).astype("<f4").tobytes())
 
     def finish(self, truth: Truth) -> None:
-        """Write the tables."""
+        """Write the tables of nuScenes as JSON files."""
         folder = self._folder / VERSION
         folder.mkdir()
         (self._folder / "maps").mkdir()

@@ -225,7 +225,7 @@ class AgentCalls:
         self._asked = (frame, sensor_data)
 
     def answer(self) -> carla.VehicleControl:
-        """Return the control for what was asked.
+        """Return the control that answers the latest question.
 
         Raises:
             AgentError: as ``step``.

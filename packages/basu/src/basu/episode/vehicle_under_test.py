@@ -103,7 +103,7 @@ class VehicleUnderTest:
         self._observers: tuple[BaseManager, ...] = ()
         self._observation: Observation | None = None
         self._is_recorded = True  # whether the frame of the observation is in the record
-        self._parting_ticks = 0  # since it was told to stop
+        self._parting_ticks = 0  # since `halt`
         self.outcome: Outcome | None = None
         self.history: History | None = None
         self.bug: Exception | None = None

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 JUDGED_FAULTS = frozenset({Fault.NONE, Fault.AGENT})  # of the rest, none says anything of the agent
 SUCCEEDED, FAILED = "SUCCESS", frozenset({"FAILURE", "AGENT_FAULT"})  # verdicts of scenarios
 NOT_EXERCISED = "NOT_EXERCISED"
-NOT_COMPLETED = "not completed ("
-"""How the reason begins that is no deed on the road."""
+NOT_COMPLETED = "not completed"
+"""How the reason begins that says how a drive ended, and not what went wrong on the road."""
 _WORDS = {True: "passed", False: "failed", None: "not judged"}
 _RULES = (Infraction.RED_LIGHT, Infraction.STOP_SIGN, Infraction.SPEEDING)
 
@@ -79,7 +79,9 @@ def success(
     wrong += [
         f"scenario {row['id']} ({row['scenario']}): {row['message']}" for row in scenarios if row["verdict"] in FAILED
     ]
-    ended = [] if outcome.status is Status.COMPLETED else [f"{NOT_COMPLETED}{outcome.status.value}): {outcome.message}"]
+    ended = (
+        [] if outcome.status is Status.COMPLETED else [f"{NOT_COMPLETED} ({outcome.status.value}): {outcome.message}"]
+    )
     if wrong or not ended:
         return Success(not wrong, (*wrong, *ended))
     judged = outcome.status.fault in JUDGED_FAULTS and outcome.status is not Status.STOPPED

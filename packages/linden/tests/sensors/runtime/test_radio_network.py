@@ -1,4 +1,4 @@
-"""Radios in a world of one wall and a few cars: who hears whom, how loudly, and when."""
+"""Radios in a world of one wall and a few cars: which radio receives a message, with what power, and when."""
 
 import math
 from collections.abc import Sequence

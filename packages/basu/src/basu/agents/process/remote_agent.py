@@ -222,7 +222,7 @@ class RemoteAgent:
             self._process.send("step", frame, begin_limit_s=self._step_begins_s)
 
     def answer(self) -> carla.VehicleControl:
-        """Return the control that ``run_step`` answers with, for the frame that was asked for.
+        """Return the control that ``run_step`` answers with, for the frame of the latest question.
 
         Raises:
             AgentError: it failed, took too long, died, or answered with what is no control. So is a sensor or

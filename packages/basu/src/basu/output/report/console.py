@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.metrics.display import NAME_WIDTH
 from basu.metrics.registry import built_in
-from basu.metrics.success import not_exercised
+from basu.metrics.success import NOT_COMPLETED, not_exercised
 from basu.output.report.in_words import answers
 from basu.output.report.scenarios.tally import LOOKS
 from basu.output.report.tracks import NO_GATE, ON_OWN_ROUTE
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 SCORES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 NOT_COMPARABLE = "NOT COMPARABLE"
-NOT_COMPLETED = "not completed"
 
 
 def table(result: Result) -> str:

@@ -27,7 +27,7 @@ class Answer(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """Answer and reason."""
+        """Return the answer with its reason."""
         return f"{self.word}: {self.reason}"
 
 
@@ -40,7 +40,7 @@ def answers(result: Result) -> tuple[Answer, ...]:
 
 
 def _safe(result: Result) -> Answer:
-    """By the rule of success, without the question whether the drive was completed."""
+    """Answer by the rule of success, leaving out whether the drive was completed."""
     if result.case is not None:
         word = {True: YES, False: NO, None: NOT_JUDGED}[result.success.passed]
         return Answer("safe", word, str(result.case["message"]))
@@ -55,7 +55,7 @@ def _safe(result: Result) -> Answer:
 
 
 def _comfortable(passengers: dict[str, Any] | None) -> Answer:
-    """By the harsh stops and the vibration that standing passengers feel."""
+    """Answer by the harsh stops and the vibration that standing passengers feel."""
     if passengers is None or passengers["comfort_score"] is None:
         return Answer("comfortable", NOT_JUDGED, "the drive was too short or stood still")
     stops, reactions = passengers["harsh_stops"], passengers["vibration"]["reactions"]
@@ -71,7 +71,7 @@ def _comfortable(passengers: dict[str, Any] | None) -> Answer:
 
 
 def _on_time(passengers: dict[str, Any] | None) -> Answer:
-    """By the timetable of the route."""
+    """Answer by the timetable of the route."""
     visits = [] if passengers is None else passengers["service"]
     planned = [visit for visit in visits if visit["on_time"] is not None]
     if not planned:

@@ -24,7 +24,7 @@ FACTS_INTERVAL_S = 0.5
 
 
 class Motion(NamedTuple):
-    """What the rules look at."""
+    """The motion of a station, by which the rules of generation decide."""
 
     location: Vector3D  # in the world, m
     heading_deg: float

@@ -18,7 +18,7 @@ class Scenario(Enum):
 
 
 class PathLossModel(Enum):
-    """Two families of formulas."""
+    """The two models of path loss of CARLA."""
 
     WINNER = "winner"
     GEOMETRIC = "geometric"
