@@ -17,9 +17,6 @@ RUN pip install --no-cache-dir --constraint constraints.txt \
     ./packages/linden ./packages/linden-maps ./packages/basu ./packages/basu-carla-log ./packages/basu-leaderboard \
     && rm -rf /src
 
-# Python's own allocator keeps a part of the memory of maps that are gone; the C library's returns it, at the same speed.
-ENV PYTHONMALLOC=malloc
-
 # The packages' folder is the root user's: kernels and maps are kept in the user's cache folder, filled here.
 USER linden
 WORKDIR /home/linden/drives

@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 def stage_by_stage(rounds: int) -> None:
-    simulation = World(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
+    simulation = World(MapLibrary([], MapCache.of_user().read).load("Linden"))
     simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), simulation.spawn_points[3])
     simulation.step(0.05)
     seen = simulation.sensor_scene.look(simulation.episode, simulation.frame)

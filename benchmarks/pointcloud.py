@@ -43,7 +43,7 @@ print(len(cloud.voxel_down_sample(float(sys.argv[2])).points), time.process_time
 def repeated_drives(places: int) -> None:
     """Print memory after each number of drives along the same places."""
     cache = MapCache.of_user()
-    world_map = MapLibrary((), cache.facts_of).load(HOME_MAP)
+    world_map = MapLibrary((), cache.read).load(HOME_MAP)
     standing = standing_of(world_map, scenery_of(world_map).scene, cache)
     caster = caster_of(standing, [])
     along = places_along(parse(world_map.text), 5.0, 2.4)[:places]

@@ -135,7 +135,7 @@ def timed(work: Callable[[], object], rounds: int, before: Callable[[], object] 
 
 def town(vehicles: int) -> World:
     cache = MapCache.of_user()
-    simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = World(MapLibrary((), cache.read).load(HOME_MAP), EpisodeSettings())
     simulation.sensor_scene.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     points = simulation.spawn_points
     for point in points[:: max(1, len(points) // vehicles)][:vehicles]:

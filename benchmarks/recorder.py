@@ -69,7 +69,7 @@ def main() -> None:
     parser.add_argument("--vehicles", type=int, nargs="+", default=[1, 10, 50, 100, 250])
     parser.add_argument("--frames", type=int, default=200)
     arguments = parser.parse_args()
-    maps = MapLibrary([], MapCache.of_user().facts_of)
+    maps = MapLibrary([], MapCache.of_user().read)
     print(f"{'vehicles':>8} {'off':>8} {'plain':>8} {'more':>8} {'replay':>8} {'bytes':>8} {'more':>8}")
     with tempfile.TemporaryDirectory() as folder:
         for count in arguments.vehicles:

@@ -27,7 +27,7 @@ def town(device: str) -> World:
     """Return Linden, nobody in it, its sensors on a device."""
     check_device(device)
     cache = MapCache.of_user()
-    simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings(True))
+    simulation = World(MapLibrary((), cache.read).load(HOME_MAP), EpisodeSettings(True))
     simulation.sensor_scene.device = device
     simulation.sensor_scene.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     return simulation

@@ -38,7 +38,7 @@ def main() -> None:
     parser.add_argument("--picture", action="store_true")
     arguments = parser.parse_args()
     cache = MapCache.of_user()
-    world = World(MapLibrary((), cache.facts_of).load("Linden"))
+    world = World(MapLibrary((), cache.read).load("Linden"))
     populate(world, arguments.vehicles, arguments.walkers)
     ticks(world)
     scene(world, cache)

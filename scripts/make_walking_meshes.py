@@ -12,7 +12,7 @@ from linden.simulation.walkers import obstacles_of
 
 def main() -> None:
     """Write a file for each map, and print its place and size."""
-    maps = MapLibrary([], MapCache.of_user().facts_of)
+    maps = MapLibrary([], MapCache.of_user().read)
     for name in sorted(HOME_MAPS):
         world_map = maps.load(name)
         file = write_mesh(world_map, made(world_map, obstacles_of(world_map)))

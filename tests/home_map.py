@@ -9,4 +9,4 @@ from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
 @cache
 def home_map() -> LoadedMap:
     """Return Linden's map; no test changes it. The test of the cache of maps compares it with one derived anew."""
-    return MapLibrary((), MapCache.of_user().facts_of).load(HOME_MAP)
+    return MapLibrary((), MapCache.of_user().read).load(HOME_MAP)

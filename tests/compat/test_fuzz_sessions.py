@@ -48,7 +48,7 @@ def overheard(server: RunningServer) -> list[bytes]:
 @pytest.fixture(scope="module")
 def context() -> Context:
     registry.load_handlers()
-    maps = MapLibrary((), MapCache.of_user().facts_of)
+    maps = MapLibrary((), MapCache.of_user().read)
     return Context(
         world=World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
         maps=maps,

@@ -16,6 +16,7 @@ from linden.maps.cache import MapCache
 from linden.maps.facts import MapFacts, derive
 from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
 from linden.maps.opendrive.limits import MapError
+from linden.maps.reading import MapReading, read
 from linden.protocol.values.actors import ActorDescription
 from linden.world import World
 from opendrive_texts import signal, street_through_junction
@@ -32,13 +33,13 @@ def keep(folder: Path, text: str = STREET) -> Path:
     return file
 
 
-def refuse_to_derive(_text: str) -> MapFacts:
-    raise AssertionError("the map was derived although it was kept")
+def refuse_to_read(_text: str, _walls_beyond_m: float | None) -> MapReading:
+    raise AssertionError("the map was read although it was kept")
 
 
 @pytest.fixture
-def nothing_is_derived(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
-    return lambda: monkeypatch.setattr(map_cache, "derive", refuse_to_derive)
+def nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
+    return lambda: monkeypatch.setattr(map_cache, "read_text", refuse_to_read)
 
 
 def assert_same(first: MapFacts, second: MapFacts) -> None:
@@ -54,12 +55,10 @@ def assert_same(first: MapFacts, second: MapFacts) -> None:
 
 
 @pytest.mark.unmeasured
-def test_what_is_kept_of_linden_is_what_would_be_derived(
-    tmp_path: Path, nothing_is_derived: Callable[[], None]
-) -> None:
+def test_what_is_kept_of_linden_is_what_would_be_derived(tmp_path: Path, nothing_is_read: Callable[[], None]) -> None:
     text = (Path(map_cache.__file__).parent.parent / "data" / f"{HOME_MAP}.xodr").read_text("utf-8")
     derived = MapCache(tmp_path).facts_of(text)
-    nothing_is_derived()
+    nothing_is_read()
     kept = MapCache(tmp_path).facts_of(text)
     assert len(kept.signals) > 100
     assert len(kept.controllers) > 0
@@ -128,7 +127,7 @@ def flip(data: bytes) -> bytes:
 )
 def test_a_broken_file_is_made_anew(
     tmp_path: Path,
-    nothing_is_derived: Callable[[], None],
+    nothing_is_read: Callable[[], None],
     caplog: pytest.LogCaptureFixture,
     damage: Callable[[bytes], bytes],
 ) -> None:
@@ -138,7 +137,7 @@ def test_a_broken_file_is_made_anew(
     with caplog.at_level(logging.INFO, "linden"):
         assert_same(MapCache(tmp_path).facts_of(STREET), derive(STREET))
     assert "is made anew" in caplog.text
-    nothing_is_derived()
+    nothing_is_read()
     MapCache(tmp_path).facts_of(STREET)
 
 
@@ -263,15 +262,27 @@ def test_a_user_without_a_home_gets_a_map_all_the_same(monkeypatch: pytest.Monke
     assert_same(MapCache.of_user().facts_of(STREET), derive(STREET))
 
 
-def test_a_library_takes_its_maps_from_the_cache(tmp_path: Path, nothing_is_derived: Callable[[], None]) -> None:
+def test_a_library_takes_its_maps_from_the_cache(tmp_path: Path, nothing_is_read: Callable[[], None]) -> None:
     maps, cache = tmp_path / "maps", tmp_path / "cache"
     maps.mkdir()
     (maps / "Street.xodr").write_text(STREET)
     keep(cache)
-    nothing_is_derived()
-    loaded = MapLibrary([maps], MapCache(cache).facts_of).load("Street")
+    nothing_is_read()
+    loaded = MapLibrary([maps], MapCache(cache).read).load("Street")
     assert loaded.text == STREET
     assert [signal.signal_id for signal in loaded.signals] == ["7", "8"]
+
+
+def test_walls_are_kept_by_their_distance(tmp_path: Path, nothing_is_read: Callable[[], None]) -> None:
+    cache, road = MapCache(tmp_path), STREET.replace('type="sidewalk"', 'type="driving"')
+    first, second = cache.read(road, 1.0), cache.read(road, 2.0)
+    assert len(first.wall_feet_m) > 0
+    assert first.wall_feet_m.tobytes() != second.wall_feet_m.tobytes()
+    nothing_is_read()
+    for kept, walls_beyond_m in ((first, 1.0), (second, 2.0)):
+        again = cache.read(road, walls_beyond_m)
+        assert_same(again.facts, kept.facts)
+        assert again.wall_feet_m.tobytes() == read(road, walls_beyond_m).wall_feet_m.tobytes()
 
 
 def test_a_file_with_a_good_digest_and_bad_content_is_made_anew(tmp_path: Path) -> None:

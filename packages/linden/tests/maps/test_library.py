@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from linden.errors import Refusal, UserError
-from linden.maps.facts import MapFacts, derive
 from linden.maps.library import MOST_KEPT, MapLibrary
 from linden.maps.opendrive import parse
+from linden.maps.reading import MapReading, read
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -36,11 +36,11 @@ def test_a_map_is_found_by_each_of_its_names(folder: Path, name: str) -> None:
 def test_a_map_is_made_ready_once(folder: Path) -> None:
     made = []
 
-    def facts_of(text: str) -> MapFacts:
+    def noted(text: str, _walls_beyond_m: float | None = None) -> MapReading:
         made.append(text)
-        return derive(text)
+        return read(text)
 
-    library = MapLibrary([folder], facts_of)
+    library = MapLibrary([folder], noted)
     assert made == []
     assert library.load("Street") is library.load("Carla/Maps/Street")
     assert made == [STREET]

@@ -96,7 +96,7 @@ def map_text(folder: Path, named: Path | None, town: str) -> str:
     from linden.maps.library import MapLibrary  # noqa: PLC0415 - likewise
 
     try:
-        return MapLibrary((), MapCache.of_user().facts_of).load(town).text
+        return MapLibrary((), MapCache.of_user().read).load(town).text
     except Refusal:
         raise UserError(f"{folder} holds no map of {town}; name its OpenDRIVE file with --map FILE.xodr") from None
 

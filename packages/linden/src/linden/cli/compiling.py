@@ -96,7 +96,7 @@ def _home_world(cache: "MapCache") -> "World":
     from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
     from linden.world import World  # noqa: PLC0415 - as in driving
 
-    return World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    return World(MapLibrary([], cache.read).load(HOME_MAP), EpisodeSettings())
 
 
 def frame() -> None:

@@ -53,7 +53,7 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
         )
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     cache = MapCache.of_user()
-    maps, meshes = MapLibrary(arguments.maps, cache.facts_of), MeshLibrary(cache)
+    maps, meshes = MapLibrary(arguments.maps, cache.read), MeshLibrary(cache)
     first_start.begin(cache)  # so that a client's first tick takes no longer than the others
     try:
         world_map = maps.load(arguments.map)

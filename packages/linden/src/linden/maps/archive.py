@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from linden.maps.facts import MapFacts
 from linden.maps.ground import Ground
 from linden.maps.opendrive.roadside import Controller
+from linden.maps.reading import MapReading
 from linden.maps.records import GIVE_WAY, LANES, LOTS, PlacedSignal, Standing
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 
@@ -44,7 +45,8 @@ _COLUMNS: dict[str, tuple[np.dtype[Any], tuple[int | None, ...]]] = {
     "give_way": (GIVE_WAY, (None,)),
     "records": (np.dtype(np.uint8), (None,)),
 }
-"""What an archive holds: type and shape of each array, ``None`` for any length."""
+"""What an archive of facts holds: type and shape of each array, ``None`` for any length."""
+_WALLS = "wall_feet_m"
 
 
 def pack(facts: MapFacts) -> dict[str, NDArray[Any]]:
@@ -91,8 +93,30 @@ def unpack(arrays: Arrays) -> MapFacts:
     )
 
 
+def pack_reading(reading: MapReading) -> dict[str, NDArray[Any]]:
+    """Return facts and walls as arrays."""
+    return {**pack(reading.facts), _WALLS: reading.wall_feet_m}
+
+
+def unpack_reading(arrays: Arrays) -> MapReading:
+    """Return what :func:`pack_reading` made arrays of.
+
+    Raises:
+        ValueError, TypeError, KeyError: these are not such arrays.
+    """
+    return MapReading(unpack(arrays), _fitting(_WALLS, arrays[_WALLS], np.dtype(np.float64), (None, 2, 3)))
+
+
 def _column(name: str, array: NDArray[Any]) -> NDArray[Any]:
-    dtype, shape = _COLUMNS[name]
+    return _fitting(name, array, *_COLUMNS[name])
+
+
+def _fitting(name: str, array: NDArray[Any], dtype: np.dtype[Any], shape: tuple[int | None, ...]) -> NDArray[Any]:
+    """Return the array.
+
+    Raises:
+        ValueError: it has another type or shape.
+    """
     fits = array.ndim == len(shape) and all(
         wanted in (None, size) for wanted, size in zip(shape, array.shape, strict=True)
     )

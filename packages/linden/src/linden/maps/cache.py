@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import fingerprint, machine
-from linden.maps.archive import pack, unpack
-from linden.maps.facts import MapFacts, derive
+from linden.maps.archive import pack_reading, unpack_reading
+from linden.maps.facts import MapFacts
+from linden.maps.reading import MapReading
+from linden.maps.reading_process import read_text
 
 log = logging.getLogger("linden")
 Read = TypeVar("Read")
@@ -32,7 +34,7 @@ _DERIVING = ("maps/*.py", "maps/opendrive/**/*.py", "protocol/values/*.py", "geo
 
 
 class MapCache:
-    """A folder of map facts."""
+    """A folder of what was read of maps."""
 
     def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
         """Use a folder, which is made when there is something to keep."""
@@ -52,17 +54,21 @@ class MapCache:
         return cls(folder / "linden" / "maps")
 
     def facts_of(self, text: str) -> MapFacts:
-        """Return the facts of an OpenDRIVE text, out of the folder or derived.
+        """Return the facts of an OpenDRIVE text, as :meth:`read` does."""
+        return self.read(text).facts
+
+    def read(self, text: str, walls_beyond_m: float | None = None) -> MapReading:
+        """Return what an OpenDRIVE text says, out of the folder or read by :func:`read_text`.
 
         Raises:
-            MapError: the text is no OpenDRIVE that can be used.
+            MapError, UserError, NotWantedError: as of ``read_text``.
         """
-        file = self._folder / f"{_key(text)}.npz"
-        facts = _read(file)
-        if facts is None:
-            facts = derive(text)
-            self._write(file, facts)
-        return facts
+        file = self._folder / f"{_key(text, walls_beyond_m)}.npz"
+        reading = _kept(file)
+        if reading is None:
+            reading = read_text(text, walls_beyond_m)
+            self._write(file, reading)
+        return reading
 
     def kept(self, name: str, make: Callable[[], bytes], read: Callable[[bytes], Read]) -> Read:
         """Return what ``read`` reads of the file of that name, made where there is none or it is broken.
@@ -101,8 +107,8 @@ class MapCache:
         """Keep something else than before under a name."""
         self._keep(self._folder / name, lambda stream: stream.writelines((_digest(content), content)))
 
-    def _write(self, file: Path, facts: MapFacts) -> None:
-        self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle
+    def _write(self, file: Path, reading: MapReading) -> None:
+        self._keep(file, lambda stream: np.savez(stream, **pack_reading(reading)))  # type: ignore[arg-type] # one array could be called allow_pickle
 
     def _keep(self, file: Path, write: Callable[[IO[bytes]], object]) -> None:
         part = file.with_suffix(f".{os.getpid()}.{next(_PARTS)}.part")
@@ -146,23 +152,23 @@ def _digest(content: bytes) -> bytes:
     return hashlib.sha256(content).digest()
 
 
-def _key(text: str) -> str:
+def _key(text: str, walls_beyond_m: float | None) -> str:
     sources = fingerprint(*(file for pattern in _DERIVING for file in _PACKAGE.glob(pattern)))
-    digest = hashlib.sha256(f"{sources} {machine()}\n".encode())
+    digest = hashlib.sha256(f"{sources} {machine()} {walls_beyond_m}\n".encode())
     digest.update(text.encode())
     return digest.hexdigest()[:32]
 
 
-def _read(file: Path) -> MapFacts | None:
-    """Return the facts a file holds, None where there is no such file or it is no good."""
+def _kept(file: Path) -> MapReading | None:
+    """Return what a file holds, None where there is no such file or it is no good."""
     try:
         with np.load(file, allow_pickle=False) as archive:
             arrays: dict[str, NDArray[Any]] = {name: archive[name] for name in archive.files}
-        facts = unpack(arrays)
+        reading = unpack_reading(arrays)
         os.utime(file)  # so that it counts as used
     except FileNotFoundError:
         return None
     except Exception as error:  # noqa: BLE001 - whatever may be wrong with a file, it can be made anew
         log.info("%s is made anew: %s", file, error)
         return None
-    return facts
+    return reading

@@ -1,18 +1,16 @@
 """The maps a server offers: found by name, made ready once, and kept for the next load."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.errors import Refusal, UserError
-from linden.maps.facts import MapFacts, derive
-
-if TYPE_CHECKING:
-    from linden.maps.opendrive.model import OpenDrive
+from linden.maps.facts import MapFacts
+from linden.maps.reading import NO_WALLS, MapReading, read
 
 HOME_MAP = "Linden"
 HOME_MAPS = frozenset({HOME_MAP, "Linden_thesis"})
@@ -31,7 +29,7 @@ _FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
 class Walls(NamedTuple):
     """Walls of one height over the feet (N, 2, 3) of their pieces, from and to, m."""
 
-    feet_m: NDArray[np.float64] = np.empty((0, 2, 3))
+    feet_m: NDArray[np.float64] = NO_WALLS
     height_m: float = 0.0
 
 
@@ -55,15 +53,27 @@ class LoadedMap(MapFacts):
         return _FOLDERS[1] + self.name
 
 
+class Reader(Protocol):
+    """Reads OpenDRIVE texts: :func:`linden.maps.reading.read`, or a cache of what it returned."""
+
+    def __call__(self, text: str, walls_beyond_m: float | None = None, /) -> MapReading:
+        """Return what a text says, with walls where a distance is given.
+
+        Raises:
+            UserError: the text is no OpenDRIVE that can be used.
+        """
+        ...
+
+
 class MapLibrary:
     """The packaged maps, those of the folders a user named, and what clients sent."""
 
-    def __init__(self, folders: Iterable[Path] = (), facts_of: Callable[[str], MapFacts] = derive) -> None:
+    def __init__(self, folders: Iterable[Path] = (), reader: Reader = read) -> None:
         """Look for maps; the files are read when they are loaded.
 
         Args:
             folders: where to look, beside the packaged maps.
-            facts_of: gives the facts of an OpenDRIVE text, anew or out of a cache.
+            reader: reads OpenDRIVE texts.
 
         Raises:
             UserError: a folder does not exist or holds no map.
@@ -75,7 +85,7 @@ class MapLibrary:
                 problem = "holds no .xodr file" if folder.is_dir() else "is not a folder"
                 raise UserError(f"--maps {folder} {problem}; name a folder of OpenDRIVE maps")
             self._files.update({file.stem: file for file in found})
-        self._facts_of = facts_of
+        self._read = reader
         self._loaded: dict[str, LoadedMap] = {}
 
     def names(self) -> list[str]:
@@ -111,7 +121,8 @@ class MapLibrary:
         """
         bare = _bare(name)
         try:
-            return self._make_ready(bare, self._files[bare].read_text("utf-8"))
+            text = self._files[bare].read_text("utf-8")
+            return LoadedMap(name=bare, text=text, **vars(self._read(text).facts))
         except (OSError, UnicodeDecodeError, UserError) as error:
             raise Refusal(f"Map '{name}' cannot be read: {error}") from error
 
@@ -135,29 +146,12 @@ class MapLibrary:
             Refusal: the text is no OpenDRIVE that can be used.
         """
         try:
-            if wall_height_m <= 0.0:
-                return self._make_ready(GENERATED_MAP, text)
-            opendrive = _parsed(text)  # held here, so that the facts are derived of the same
-            ready = self._make_ready(GENERATED_MAP, text)
-            return replace(ready, walls=Walls(_walls(opendrive, ready, beyond_m), wall_height_m))
+            reading = self._read(text, beyond_m if wall_height_m > 0.0 else None)
         except UserError as error:
             raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
-
-    def _make_ready(self, name: str, text: str) -> LoadedMap:
-        return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))
+        walls = Walls(reading.wall_feet_m, max(0.0, wall_height_m))
+        return LoadedMap(name=GENERATED_MAP, text=text, walls=walls, **vars(reading.facts))
 
 
 def _bare(name: str) -> str:
     return name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
-
-
-def _parsed(text: str) -> "OpenDrive":
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - needed only for maps that a client sends
-
-    return parse(text)
-
-
-def _walls(opendrive: "OpenDrive", facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
-    from linden.maps.road_walls import walls_along  # noqa: PLC0415 - needed only for maps that a client sends
-
-    return walls_along(opendrive, facts.ground, beyond_m)
