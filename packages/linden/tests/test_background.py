@@ -97,3 +97,32 @@ def test_one_thread_at_a_time_is_let_in_and_one_that_is_not_wanted_stops_waiting
     with pytest.raises(ZeroDivisionError), turns:
         _ = 1 // 0
     assert take_turn() == 1
+
+
+HEAPS = """
+import ctypes, tempfile, threading
+from linden.background import share_one_heap
+share_one_heap() if {shared} else None
+started = threading.Barrier(4)
+def allocate():
+    started.wait()
+    bytearray(100_000)
+threads = [threading.Thread(target=allocate) for _ in range(4)]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+libc = ctypes.CDLL(None)
+libc.fopen.restype = ctypes.c_void_p
+with tempfile.NamedTemporaryFile() as file:
+    stream = ctypes.c_void_p(libc.fopen(file.name.encode(), b"w"))
+    libc.malloc_info(0, stream)
+    libc.fclose(stream)
+    print(file.read().count(b"<heap nr="))
+"""
+
+
+def test_threads_share_one_heap_where_they_are_told_to() -> None:
+    counts = [
+        int(subprocess.check_output([sys.executable, "-c", HEAPS.format(shared=shared)])) for shared in (True, False)
+    ]
+    assert counts[0] == 1
+    assert counts[1] > 1

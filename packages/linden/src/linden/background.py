@@ -39,6 +39,7 @@ _YOUNG = (20_000, 1_000_000_000, 1_000_000_000)
 """Thresholds of Python's garbage collector: it looks at 20,000 values at a time, which takes some 3 ms."""
 _lock = Lock()
 _spared: list[tuple[int, int, int]] = []  # the thresholds before, once for each block of young_collector
+_M_ARENA_MAX = -8  # mallopt(3): most heaps that threads share
 _SETTLED_S = 1.0
 """How long after the end of work its memory is returned."""
 _returns: list[None] = []  # one for each time that memory is to be returned and was not yet
@@ -59,6 +60,17 @@ def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) ->
 
     _start(begin)
     return made
+
+
+def share_one_heap() -> None:
+    """Let all threads of this process allocate from one heap of the C library, so that its free memory can be returned.
+
+    By default glibc makes a heap for each thread, and ``malloc_trim`` never returns the end of any but the first. One
+    large map in the background left 30 MB. To be called before threads begin; other C libraries ignore it.
+    """
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(_M_ARENA_MAX, 1)
 
 
 def give_memory_back() -> None:

@@ -5,6 +5,7 @@ import logging
 from functools import partial
 from typing import NamedTuple
 
+from linden.background import share_one_heap
 from linden.cli.compiling import FirstStart
 from linden.errors import Refusal, UserError
 from linden.maps.cache import MapCache
@@ -44,6 +45,7 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
         from linden.sensors.casting.choose import check_device  # noqa: PLC0415 - Embree, for which a start need not wait
 
         check_device(arguments.device)
+    share_one_heap()
     registry.load_handlers()
     if not is_loopback(arguments.host):
         log.warning(

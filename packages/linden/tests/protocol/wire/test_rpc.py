@@ -221,3 +221,20 @@ def test_pixels_of_a_call_without_sense_get_a_sentence() -> None:
     broken = b"\x94\x00\x01\xbe" + rpc.OF_PIXELS[0].encode() + b"\x91\xc1"
     with pytest.raises(ProtocolError, match="not msgpack"):
         RpcConnection().receive(broken)
+
+
+def test_a_long_message_leaves_no_buffer_and_what_follows_it_is_read() -> None:
+    connection, text = RpcConnection(), "x" * 5_000_000
+    long = Call(1, "copy_opendrive_to_file", [text], is_async=False)
+    stream = request(long)
+    tracemalloc.start()
+    before, _ = tracemalloc.get_traced_memory()
+    for begin in range(0, len(stream), 262_144):
+        received = connection.receive(stream[begin : begin + 262_144])
+    assert received == [long]
+    del received
+    assert tracemalloc.get_traced_memory()[0] - before < 500_000
+    tracemalloc.stop()
+    assert connection.receive(request(CALL) + request(CALL)[:3]) == [CALL]
+    assert connection.unfinished_bytes == 3
+    assert connection.receive(request(CALL)[3:]) == [CALL]

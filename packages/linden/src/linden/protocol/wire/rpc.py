@@ -63,6 +63,8 @@ _ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
 """The first bytes of arrays and maps in msgpack."""
 _HEAD_BYTES = 64 * 1024  # method and names of objects
 _FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
+_KEPT_BUFFER_BYTES = 1_000_000
+"""After as many bytes an unpacker is replaced, because its buffer never shrinks: a text of 34 MB leaves 64 MB."""
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
 
 
@@ -70,15 +72,8 @@ class RpcConnection:
     """The server's half of one connection: turns what arrives into calls."""
 
     def __init__(self) -> None:
-        self._unpacker = msgpack.Unpacker(
-            raw=False,
-            unicode_errors="surrogateescape",  # a text that is not UTF-8 comes back as it came
-            max_buffer_size=MAX_MESSAGE_BYTES,
-            read_size=_FIRST_BUFFER_BYTES,
-            max_array_len=MAX_ARRAY_ITEMS,
-            max_map_len=0,  # CARLA sends none
-        )
-        self._fed_bytes = self._whole_bytes = 0  # what the unpacker has got, and up to where that is whole calls
+        self._unpacker = _empty_unpacker()
+        self._fed_bytes = self._whole_bytes = 0  # what this unpacker has got, and up to where that is whole calls
         self.bytes = self.arrays = 0
         """How much has come in all."""
         self.unfinished_arrays = 0
@@ -130,6 +125,18 @@ class RpcConnection:
             self.unfinished_arrays += arrays
         if self.unfinished_arrays > MAX_ARRAYS:
             raise ProtocolError(f"a message has more than {MAX_ARRAYS} arrays")
+        self._unpack(data, calls)
+        if self.unfinished_bytes > MAX_MESSAGE_BYTES:
+            raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
+        if self._fed_bytes == self._whole_bytes > _KEPT_BUFFER_BYTES:
+            self._unpacker, self._fed_bytes, self._whole_bytes = _empty_unpacker(), 0, 0
+
+    def _unpack(self, data: bytes, calls: list[Call]) -> None:
+        """Append the calls that are whole with what has come.
+
+        Raises:
+            ProtocolError: what has come is no call.
+        """
         try:
             self._unpacker.feed(data)
             while True:
@@ -140,8 +147,6 @@ class RpcConnection:
             pass
         except _UNPACKING_FAILED as error:
             raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
-        if self.unfinished_bytes > MAX_MESSAGE_BYTES:
-            raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
 
     def _next(self) -> Call:
         """Return the next call that is whole.
@@ -154,6 +159,17 @@ class RpcConnection:
         self._unpacker.skip()
         call, self._passed_over = self._passed_over, None
         return call
+
+
+def _empty_unpacker() -> msgpack.Unpacker:
+    return msgpack.Unpacker(
+        raw=False,
+        unicode_errors="surrogateescape",  # a text that is not UTF-8 comes back as it came
+        max_buffer_size=MAX_MESSAGE_BYTES,
+        read_size=_FIRST_BUFFER_BYTES,
+        max_array_len=MAX_ARRAY_ITEMS,
+        max_map_len=0,  # CARLA sends none
+    )
 
 
 def _of_pixels(data: bytes) -> Call | None:
