@@ -1,6 +1,7 @@
 """A live ``linden serve`` in a process of its own, for tests that talk to it as any client does."""
 
 import ctypes
+import os
 import re
 import selectors
 import signal
@@ -15,7 +16,7 @@ from pathlib import Path
 
 from tracing import of_servers
 
-READY = re.compile(r"linden: ready, rpc port (\d+), streaming port (\d+)")
+READY = re.compile(r"linden: ready, rpc port (\d+), streaming port (\d+)\n")
 PR_SET_PDEATHSIG = 1
 """Of prctl(2)."""
 START_LIMIT_S = 900.0
@@ -86,10 +87,10 @@ def _ports(process: subprocess.Popen[str], log_file: Path) -> tuple[int, int]:
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)
         while (left_s := deadline_s - time.monotonic()) > 0 and selector.select(left_s):
-            line = process.stdout.readline()
-            said += line
-            if found := READY.search(line):
+            part = os.read(process.stdout.fileno(), 65536).decode()  # readline() would keep lines that select() misses
+            said += part
+            if found := READY.search(said):
                 return int(found[1]), int(found[2])
-            if not line:
+            if not part:
                 break
     raise AssertionError(f"the server did not become ready: {said}{log_file.read_text('utf-8')}")
