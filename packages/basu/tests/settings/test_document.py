@@ -20,7 +20,7 @@ def written(folder: Path, chosen: RunOptions | None = None, **changes: Any) -> P
     route = folder / "r.xml"
     if not route.exists():
         route.write_text("<routes/>")
-    document = config_document(RUN, chosen or RunOptions(), Scoring(), ["basu", "run", "basic"], [route])
+    document = config_document(RUN, chosen or RunOptions(), Scoring(), [route])
     merged = {key: value for key, value in {**document, **changes}.items() if value is not None}
     path = folder / "config.json"
     path.write_text(json.dumps(merged))
