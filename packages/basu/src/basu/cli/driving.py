@@ -43,6 +43,7 @@ def add_score(score: argparse.ArgumentParser) -> None:
         "Compute scores and infractions of a run again, from its history and facts, without a simulator."
     )
     score.add_argument("folder", type=Path, metavar="RUN", help="a run's folder, such as runs/latest")
+    score.add_argument("--write", action="store_true", help="replace result.json, also one of an earlier version")
     score.add_argument("--json", action="store_true", help="print the judgement as JSON")
     score.add_argument(
         "--metrics",

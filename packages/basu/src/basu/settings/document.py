@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import basu
 from basu.errors import UserError
-from basu.files import PACKAGE_FOLDER, read_json
+from basu.files import PACKAGE_FOLDER, other_version, read_json
 from basu.settings.forms import words_of
 from basu.settings.option import Layer, Settings, fields_of, is_told, to_json
 
@@ -77,7 +77,7 @@ def read_config(path: Path, kind: str, model: type[Settings]) -> Config:
             f"every option; give the options again (it says: {_old_command(document)})"
         )
     if found != CONFIG_VERSION:
-        raise UserError(f"the config {file} has the schema version {found!r}, and this basu reads {CONFIG_VERSION}")
+        raise other_version(file, found, CONFIG_VERSION)
     if document.get("kind") != kind:
         other = document.get("kind")
         hint = f"use `basu {other} --config {file}`" if other in {RUN, SCENARIO_RUN} else f"it must be '{kind}'"

@@ -1,6 +1,6 @@
 """The declaration of an option: what one field of a settings model is called, means and may be.
 
-A settings model is a frozen dataclass that inherits from ``Settings``. A field whose default is `option` is an option.
+A settings model is a frozen dataclass that inherits from ``Settings``. A field with `option` as its default is an option.
 Its type, default and bounds hold for the command line, for JSON and for Python alike. The name of the field gives the
 flag and the unit: ``timeout_s`` is ``--timeout S``, in s.
 """

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from basu.metrics.display import NO, NOT_JUDGED, YES, Answer
 from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
 from basu.metrics.passengers.causes import StopCause
 from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
+from basu.metrics.passengers.service import EARLY_S, LATE_S
 from basu.metrics.passengers.verdict import judge
 from basu.metrics.registry import Column, Drive, Metric, register
 from basu.outcome import Status
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
+CALM = frozenset({"not uncomfortable", "a little uncomfortable"})  # the mildest reactions of ISO 2631-1, annex C.2.3
 _PLACE = record(
     about_="where the passenger stands, from the vehicle's origin",
     forward_m=number("m"),
@@ -203,9 +206,13 @@ class Passengers(Metric):
                 f"{100.0 * value['balance']['step_share']:.1f} % of the time; "
                 f"{' or '.join(value['vibration']['reactions'])}"
             ),
-            *_timetable(value["service"]),
             *_boarding(value["service"]),
         ]
+
+    def answers(self, result: JudgedRun) -> tuple[Answer, Answer]:
+        """Return whether the drive was comfortable, and whether it was on time."""
+        value = result.metrics[self.name]
+        return _comfortable(value), _on_time(value)
 
     def columns(self, result: JudgedRun) -> list[Column]:
         """Passed, failed, or a dash."""
@@ -214,14 +221,35 @@ class Passengers(Metric):
         return [Column("passengers", said)]
 
 
-def _timetable(visits: list[dict[str, Any]]) -> list[str]:
-    """How the timetable was kept."""
+def _comfortable(value: dict[str, Any] | None) -> Answer:
+    """Answer by the harsh stops and the vibration that passengers feel while they stand."""
+    if value is None or value["comfort_score"] is None:
+        return Answer("comfortable", NOT_JUDGED, "the drive was too short or stood still")
+    stops, reactions = value["harsh_stops"], value["vibration"]["reactions"]
+    score = f"comfort score {value['comfort_score']:.2f} of 1"
+    if stops:
+        worst = max(stops, key=lambda stop: float(stop["strongest_mps2"]))
+        often = "once" if len(stops) == 1 else f"{len(stops)} times"
+        felt = f"felt up to {worst['strongest_mps2']:.1f} m/s² at {worst['t_s']:.1f} s"
+        return Answer("comfortable", NO, f"braked harshly {often}, {felt}; {score}")
+    if CALM.isdisjoint(reactions):
+        return Answer("comfortable", NO, f"vibration is {' or '.join(reactions)}; {score}")
+    return Answer("comfortable", YES, f"no harsh stop; {score}")
+
+
+def _on_time(value: dict[str, Any] | None) -> Answer:
+    """Answer by the timetable of the route."""
+    visits = [] if value is None else value["service"]
     planned = [visit for visit in visits if visit["on_time"] is not None]
     if not planned:
-        return []
-    delays = [visit["delay_s"] for visit in planned if visit["delay_s"] is not None]
-    worst = f", {min(delays):+.0f} to {max(delays):+.0f} s" if delays else ""
-    return [f"timetable         {sum(visit['on_time'] for visit in planned)} of {len(planned)} stops on time{worst}"]
+        return Answer("on time", NOT_JUDGED, "the route has no timetable")
+    kept = sum(visit["on_time"] for visit in planned)
+    delays_s = [float(visit["delay_s"]) for visit in planned if visit["delay_s"] is not None]
+    spread = [f"up to {-min(delays_s):.0f} s early"] if delays_s and min(delays_s) < -EARLY_S else []
+    spread += [f"up to {max(delays_s):.0f} s late"] if delays_s and max(delays_s) > LATE_S else []
+    spread += [f"{len(planned) - len(delays_s)} not reached"] if len(delays_s) < len(planned) else []
+    reason = ", ".join([f"{kept} of {len(planned)} stops", *spread])
+    return Answer("on time", YES if kept == len(planned) else NO, reason)
 
 
 def _boarding(visits: list[dict[str, Any]]) -> list[str]:
