@@ -1,6 +1,6 @@
 """The declaration of an option: what one field of a settings model is called, means and may be.
 
-A settings model is a frozen dataclass that inherits from ``Settings``. A field with `option` as its default is an option.
+A settings model is a frozen dataclass that inherits from ``Settings``. A field with a default by `option` is an option.
 Its type, default and bounds hold for the command line, for JSON and for Python alike. The name of the field gives the
 flag and the unit: ``timeout_s`` is ``--timeout S``, in s.
 """
@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from basu.errors import UserError
+from basu.units import parted
 
 T = TypeVar("T")
-UNITS = {"s": "s", "m": "m", "gb": "GB", "mps": "m/s", "mps2": "m/s²"}  # by the end of a field's name
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,30 +68,24 @@ class Field(NamedTuple):
     @property
     def flag(self) -> str:
         """The option on the command line."""
-        return self.option.flag or f"--{(self._parts[0] or self.name).replace('_', '-')}"
+        return self.option.flag or f"--{parted(self.name)[0].replace('_', '-')}"
 
     @property
     def unit(self) -> str:
         """The unit of the value; empty where it has none."""
-        return self.option.unit or UNITS.get(self._parts[1], "")
+        return self.option.unit or parted(self.name)[1]
 
     @property
     def metavar(self) -> str | None:
         """What stands for the value on the help page; None for a flag without a value."""
         if self.option.metavar is None and not {int, float}.isdisjoint(alternatives(self.type)):
-            return UNITS.get(self._parts[1], "N").upper().replace("²", "2")
+            return (parted(self.name)[1] or "N").upper().replace("²", "2")
         return self.option.metavar or "|".join(map(str, choices(self.type))) or None
 
     @property
     def names_files(self) -> bool:
         """Whether the values name files."""
         return self.option.is_file or Path in (*alternatives(self.type), *get_args(self.type))
-
-    @property
-    def _parts(self) -> tuple[str, str]:
-        """The name without its unit, and the end of the name that is the unit; both empty where it has none."""
-        stem, _, end = self.name.rpartition("_")
-        return (stem, end) if end in UNITS else ("", "")
 
 
 def alternatives(kind: Any) -> tuple[Any, ...]:  # noqa: ANN401 - a type
