@@ -88,7 +88,8 @@ def record_of(
 
     Numbers are 0 or more but for those in ``signed``, and a name that ends with ``_share`` has 1 as its highest value.
     """
-    found = {name: _member(name, each, is_signed=name in signed) for name, each in get_type_hints(kind).items()}
+    hints = get_type_hints(kind).items()
+    found: dict[str, Any] = {name: _member(name, each, is_signed=name in signed) for name, each in hints}
     return record(about_=about, **{**found, **(more or {})})
 
 
