@@ -58,15 +58,17 @@ def table(model: type) -> str:
     """Return a model's options as a table, in the order of the help page."""
     rows = ["| option | key | meaning | default |", "|---|---|---|---|"]
     for field in fields_of(model):
-        notes = [note for note in (field.option.unit and f"in {field.option.unit}", bounds(field.option)) if note]
+        notes = [note for note in (field.unit and f"in {field.unit}", bounds(field.option)) if note]
         meaning = ", ".join([field.option.help, *notes]) + ("" if field.option.repeats else " *")
         rows.append(f"| {_typed(field)} | `{field.name}` | {meaning.replace('|', '/')} | {_usual(field)} |")
     return "\n".join(rows)
 
 
 def _typed(field: Field) -> str:
-    metavar = f" {field.option.metavar}" if field.option.metavar else ""
-    return f"`{field.option.metavar}`" if field.option.positional else f"`{field.flag}{metavar}`"
+    if field.option.in_files:
+        return "only in `--scoring`"
+    metavar = f" {field.metavar.replace('|', '/')}" if field.metavar else ""
+    return f"`{field.metavar}`" if field.option.positional else f"`{field.flag}{metavar}`"
 
 
 def _usual(field: Field) -> str:

@@ -56,6 +56,11 @@ def read_json(path: Path, what: str, otherwise: str = "") -> Any:  # noqa: ANN40
         raise UserError(f"{what} {path} is no JSON: {error}{advice}") from error
 
 
+def other_version(path: Path, found: object, reads: int, advice: str = "use the version that wrote it") -> UserError:
+    """Return the refusal of a document of the schema version ``found``; ``advice`` is the next step."""
+    return UserError(f"{path} has the schema version {found!r}, and this version of basu reads {reads}; {advice}")
+
+
 MOST_DIGITS = 18  # of a whole number: more do not fit into 64 bits
 
 

@@ -92,7 +92,14 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             self._spec = case_spec(by_id(case), vehicle=vehicle, timeout_s=timeout_s)
         else:
             self._spec = route_spec(
-                routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
+                routes=routes,
+                route_id=route_id,
+                vehicle=vehicle,
+                vehicles=vehicles,
+                walkers=walkers,
+                weather=weather,
+                with_scenarios=with_scenarios,
+                timeout_s=timeout_s,
             )
         self.action_space = action_space()
         self.observation_space: gymnasium.spaces.Space[Any] = observation_space()
@@ -140,14 +147,15 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
 
 
 def route_spec(
-    routes: str,
-    route_id: str | None,
-    vehicle: str | None,
-    traffic: Traffic,
-    weather: str,
-    timeout_s: float,
     *,
-    with_scenarios: bool,
+    routes: str = "routes/linden_short.xml",
+    route_id: str | None = None,
+    vehicle: str | None = None,
+    vehicles: int = 0,
+    walkers: int = 0,
+    weather: str = "ClearNoon",
+    with_scenarios: bool = True,
+    timeout_s: float = 20.0,
 ) -> EpisodeSpec:
     """Return the episode of one route of a file, the first where none is named.
 
@@ -165,7 +173,7 @@ def route_spec(
         config=AgentConfig(vehicle=vehicle or usual.vehicle),
         weather=weather_called(weather),
         weather_along=chosen[0].weather,
-        traffic=traffic,
+        traffic=Traffic(vehicles, walkers),
         scenarios=scenarios_on(chosen[0]) if with_scenarios else (),
         lane_invasions=False,  # no reward reads them
         timeout_s=timeout_s,

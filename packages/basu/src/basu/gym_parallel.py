@@ -12,7 +12,7 @@ import contextlib
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from basu.conditions import ROLE, SimulatorSpec, Traffic
+from basu.conditions import ROLE, SimulatorSpec
 from basu.episode import Answer, Driver, Episode, Towns
 from basu.errors import UserError
 from basu.gym import route_spec
@@ -47,19 +47,13 @@ class ShuttlesEnv(pettingzoo.ParallelEnv):  # type: ignore[misc]  # the package 
         *,
         shuttles: int = 2,
         headway_m: float = 100.0,
-        routes: str = "routes/linden_short.xml",
-        route_id: str | None = None,
-        vehicle: str | None = None,
-        vehicles: int = 0,
-        walkers: int = 0,
-        weather: str = "ClearNoon",
-        with_scenarios: bool = True,
         reward: Reward | None = None,
         host: str | None = None,
         port: int = 2000,
         timeout_s: float = 20.0,
+        **route: Any,  # noqa: ANN401 - the keywords of `basu.gym.route_spec`
     ) -> None:
-        """Start a simulator, or connect to the one at ``host``.
+        """Start a simulator, or connect to the one at ``host``; ``route`` has keywords of `basu.gym.route_spec`.
 
         Raises:
             UserError: there is no such route, vehicle or weather, or a number cannot be used.
@@ -69,9 +63,7 @@ class ShuttlesEnv(pettingzoo.ParallelEnv):  # type: ignore[misc]  # the package 
             raise UserError(f"shuttles is {shuttles} and headway_m {headway_m:g}; both must be above 0")
         self.render_mode = None
         self._reward = Reward() if reward is None else reward
-        spec = route_spec(
-            routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
-        )
+        spec = route_spec(**route, timeout_s=timeout_s)
         self.possible_agents = [ROLE, *(f"{ROLE}_{number}" for number in range(2, shuttles + 1))]
         self.agents: list[str] = []
         self._action_spaces = {name: action_space() for name in self.possible_agents}

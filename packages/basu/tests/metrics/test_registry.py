@@ -13,6 +13,7 @@ from basu.campaigns.columns import columns_of, schema_of
 from basu.cli import main
 from basu.errors import UserError
 from basu.metrics import registry
+from basu.metrics.display import Answer
 from basu.metrics.registry import Drive, JudgedRun, Metric, TimedMark, built_in, user_metrics
 from basu.metrics.result import Result, judge, result_schema
 from basu.metrics.stretches import spans
@@ -92,6 +93,9 @@ class BrakeTime(Metric):
     def compute(self, drive: Drive) -> float:
         return float((drive.history.frames["applied_brake"] > 0.1).sum() * drive.history.facts.step_s)
 
+    def answers(self, result: JudgedRun) -> list[Answer]:
+        return [Answer("braking", "yes", f"for {self.text(result)}")]
+
     def moments(self, result: JudgedRun, history: History) -> list[TimedMark]:
         return spans(history, history.frames["applied_brake"] > 0.1, "braked", "standing")
 
@@ -117,8 +121,10 @@ def test_a_class_is_all_that_a_metric_of_our_own_needs() -> None:
     assert document["time_on_the_brake"] == pytest.approx(2.0)
     assert list(mistakes(document, result_schema())) == []
     assert "time on the brake 2.0 s" in table(found)
+    assert "braking           yes: for 2.0 s" in table(found)
     run = replace(record(history), result=found)
     page = report(run).decode()
+    assert "for 2.0 s" in page
     assert re.search(r"time on the brake</th><td>2\.0 s", page)
     assert re.search(
         r">brake</span><div class=\"row timed\"><i class=\"span standing\" title=\"braked from 1\.0 s", page

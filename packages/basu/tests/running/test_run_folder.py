@@ -11,12 +11,16 @@ from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.outcome import Fault
 from basu.routing.route_file import RouteDescription
-from basu.running.run_folder import command, options_again
+from basu.running.run_folder import options_again
+from basu.settings.document import RUN, command_of
 
 ROUTE = RouteDescription(id="1", town="Linden", points=(), stops=(), source="r.xml")
 ADJUSTED = [
-    *("--harsh-stop", "3", "--standing-place", "1.5,0.4,0.2", "--comfort-weight", "service=0.5"),
-    *("--comfort-weight", "balance=0.1", "--penalty", "stop_sign=0.25", "--infraction-weight", "0.6"),
+    *("--harsh-stop", "3", "--penalty", "stop_sign=0.25", "--infraction-weight", "0.6"),
+    *(
+        "--scoring",
+        '{"comfort_weights": {"service": 0.5}, "standing_place": {"forward_m": 1, "right_m": 0, "up_m": 0}}',
+    ),
     *("--step-limit", "2", "--speeding-tolerance", "0.1", "--route-deviation", "0.2"),
 ]
 
@@ -42,7 +46,7 @@ def heard(monkeypatch: pytest.MonkeyPatch, words: list[str]) -> tuple[RunOptions
 def test_the_command_of_a_run_asks_for_the_same_again(monkeypatch: pytest.MonkeyPatch, words: list[str]) -> None:
     options, scoring = heard(monkeypatch, ["run", *words, "--output", "elsewhere", "--host", "there"])
     wanted = options_again(options, ROUTE, options.seed)
-    program, *again = command(wanted, scoring)
+    program, *again = command_of(RUN, wanted, scoring)
     assert program == "basu"
     same, same_scoring = heard(monkeypatch, [*again, "--output", "elsewhere", "--host", "there"])
     assert same_scoring == scoring
@@ -55,7 +59,7 @@ def test_one_run_of_a_series_repeats_with_its_own_seed_and_route() -> None:
     again = options_again(options, ROUTE, 7)
     assert (again.routes_subset, again.route_id, again.repetitions, again.seed) == (None, "1", 1, 7)
     assert again.keys == "k.json"
-    assert command(again, Scoring()) == [
+    assert command_of(RUN, again, Scoring()) == [
         *("basu", "run", "basic", "--route-id", "1", "--seed", "7", "--keys", "k.json"),
     ]
 

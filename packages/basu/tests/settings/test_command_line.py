@@ -11,14 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from basu.cli import main, parser
+from basu.cli.typed_options import scoring_of
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.options.sumo import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM
 from basu.running.scenario_runs.options import ScenarioOptions
-from basu.settings.command_line import typed, words_of
-from basu.settings.forms import choices
-from basu.settings.option import Field, Layer, Settings, fields_of, to_json
+from basu.settings.command_line import typed
+from basu.settings.forms import words_of
+from basu.settings.option import Field, Layer, Settings, choices, fields_of, to_json
 from basu.settings.resolve import resolve
 
 MODELS = (RunOptions, Scoring, ScenarioOptions)
@@ -106,6 +107,8 @@ PARSERS = {model: parser(words) for model, words in COMMAND.items()}
 def heard(model: type[Settings], words: list[str]) -> Settings:
     """What the real command line makes of words."""
     parsed = PARSERS[model].parse_args([*COMMAND[model], *words])
+    if model is Scoring:
+        return scoring_of(parsed, Layer({}))
     return resolve(model, [Layer(typed(model, parsed), typed=True)])
 
 
@@ -139,8 +142,23 @@ def test_every_option_stands_on_the_help_page_with_its_meaning(
         parser(words).parse_args(words)
     page = capsys.readouterr().out
     for field in fields_of(model):
-        assert field.option.help in page, field.name
-        assert field.option.positional or f"{field.flag}" in page, field.name
+        assert (field.option.help in page) == (not field.option.in_files), field.name
+        assert field.option.positional or field.option.in_files or f"{field.flag}" in page, field.name
+
+
+def test_what_few_need_stands_in_a_file_or_a_text_and_has_no_flag(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = '{"comfort_weights": {"service": 0.5}}'
+    file = tmp_path / "scoring.json"
+    file.write_text(text, "utf-8")
+    assert heard(Scoring, ["--scoring", text]) == heard(Scoring, ["--scoring", str(file)])
+    assert words_of(heard(Scoring, ["--scoring", text]))[0] == "--scoring"
+    with pytest.raises(SystemExit):
+        main(["run", "basic", "--comfort-weight", "service=0.5"])
+    assert f"--comfort-weight is no option any more: write it as in --scoring '{text}'" in capsys.readouterr().err
+    with pytest.raises(UserError, match=r"--scoring \{x is no JSON"):
+        heard(Scoring, ["--scoring", "{x"])
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ def written(folder: Path, chosen: RunOptions | None = None, **changes: Any) -> P
     route = folder / "r.xml"
     if not route.exists():
         route.write_text("<routes/>")
-    document = config_document(RUN, chosen or RunOptions(), Scoring(), ["basu", "run", "basic"], [route])
+    document = config_document(RUN, chosen or RunOptions(), Scoring(), [route])
     merged = {key: value for key, value in {**document, **changes}.items() if value is not None}
     path = folder / "config.json"
     path.write_text(json.dumps(merged))
@@ -54,7 +54,7 @@ def test_a_folder_means_the_config_in_it(tmp_path: Path) -> None:
     ("changes", "sentence"),
     [
         ({"schema_version": None}, r"has no 'schema_version': an earlier version .* \(it says: basu run basic\)"),
-        ({"schema_version": 1}, "has the schema version 1, and this basu reads 2"),
+        ({"schema_version": 1}, "has the schema version 1, and this version of basu reads 2"),
         ({"kind": "scenario run"}, "is of kind 'scenario run'; use `basu scenario run --config"),
         ({"kind": "lunch"}, "is of kind 'lunch'; it must be 'run'"),
         ({"options": [1]}, r"config.json: options is \[1\]; it must be an object"),

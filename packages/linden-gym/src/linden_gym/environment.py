@@ -14,7 +14,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from basu.conditions import STEP_S, Traffic
+from basu.conditions import STEP_S
 from basu.episode.world import DROP_M, SETTLE_TICKS
 from basu.errors import UserError
 from basu.gym import route_spec
@@ -96,7 +96,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         except ValueError:
             modes = ", ".join(mode.value for mode in AutoresetMode)
             raise UserError(f"there is no autoreset_mode '{autoreset_mode}'; there are {modes}") from None
-        spec = route_spec(routes, route_id, vehicle, Traffic(), "ClearNoon", 20.0, with_scenarios=with_scenarios)
+        spec = route_spec(routes=routes, route_id=route_id, vehicle=vehicle, with_scenarios=with_scenarios)
         try:
             self.worlds = Worlds(spec.town, num_envs, device=device, dt_s=STEP_S, threads=threads)
             carla_map = carla.Map(spec.town, self.worlds.map.text)

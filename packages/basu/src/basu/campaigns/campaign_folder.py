@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.campaigns.plan import CampaignPlan
 from basu.errors import UserError
-from basu.files import read_json
+from basu.files import other_version, read_json
 from basu.output.report.documents import write_json
 from basu.running.batch import changes
 
@@ -66,7 +66,7 @@ def read_campaign_document(folder: Path) -> dict[str, Any]:
     document = read_json(path, "the campaign's document")
     found = document.get("schema_version") if isinstance(document, dict) else None
     if found != SCHEMA_VERSION:
-        raise UserError(f"{path} has the schema version {found!r}, and this version of basu reads {SCHEMA_VERSION}")
+        raise other_version(path, found, SCHEMA_VERSION)
     return dict(document)
 
 

@@ -43,6 +43,7 @@ def add_score(score: argparse.ArgumentParser) -> None:
         "Compute scores and infractions of a run again, from its history and facts, without a simulator."
     )
     score.add_argument("folder", type=Path, metavar="RUN", help="a run's folder, such as runs/latest")
+    score.add_argument("--write", action="store_true", help="replace result.json, also one of an earlier version")
     score.add_argument("--json", action="store_true", help="print the judgement as JSON")
     score.add_argument(
         "--metrics",
@@ -69,10 +70,6 @@ def add_config(command: argparse.ArgumentParser) -> None:
 def add_scoring(command: argparse.ArgumentParser) -> None:
     """Add the options of the scoring and the file that may hold them."""
     add_options(command, Scoring)
-    group = next(group for group in command._action_groups if group.title == "scoring")  # noqa: SLF001
-    group.add_argument(
-        "--scoring",
-        type=Path,
-        metavar="FILE",
-        help="a JSON file with what differs from the thesis's scoring; the options above go before it",
-    )
+    group = next(group for group in command._action_groups if group.title == Scoring.GROUP)  # noqa: SLF001
+    same = "what differs from the thesis's scoring, as a JSON file or text; the options above override it"
+    group.add_argument(Scoring.FILE_FLAG, metavar="FILE|JSON", help=same)

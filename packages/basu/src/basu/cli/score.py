@@ -17,7 +17,7 @@ from basu.metrics.result import judge
 from basu.metrics.scoring import scoring_of_run, scoring_to_json
 from basu.outcome import Outcome, Status
 from basu.output.report.console import judgement, score_lines
-from basu.output.report.documents import CONFIG_FILE, RESULT_FILE
+from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, write_json
 from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
 from basu.records.history.files import lacks, read_history
 from basu.running.series import SERIES_FILE
@@ -56,6 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
             "was changed, or another version of basu wrote it",
             file=sys.stderr,
         )
+    if arguments.write:
+        write_json(folder / RESULT_FILE, document)
     if arguments.json:
         print(json.dumps(document, indent=2, ensure_ascii=False))
         return 0

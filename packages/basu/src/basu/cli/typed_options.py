@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from basu.metrics.scoring import Scoring, read_scoring_file
+from basu.metrics.scoring import Scoring, read_scoring
 from basu.settings.command_line import typed
 from basu.settings.document import Config, read_config
 from basu.settings.option import Layer
@@ -32,7 +32,7 @@ def scoring_of(arguments: argparse.Namespace, below: Layer) -> Scoring:
     Raises:
         UserError: an option that does not exist, or a value that it cannot have.
     """
-    file = [] if arguments.scoring is None else [read_scoring_file(arguments.scoring)]
+    file = [] if arguments.scoring is None else [read_scoring(arguments.scoring)]
     return options_of(Scoring, arguments, below, *file)
 
 

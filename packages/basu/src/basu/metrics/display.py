@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 NAME_WIDTH = 18  # of the names in the console's table
+YES, NO, NOT_JUDGED = "yes", "no", "not judged"  # the words of answers
 DASH = "\N{EN DASH}"
 
 
@@ -47,6 +48,19 @@ class TimedMark(NamedTuple):
     title: str  # a sentence
     label: str = ""
     style: str = "at"  # class in report.css
+
+
+class Answer(NamedTuple):
+    """The answer to a question about a drive in words, with the reason."""
+
+    question: str
+    word: str
+    reason: str
+
+    @property
+    def sentence(self) -> str:
+        """Return the answer with its reason."""
+        return f"{self.word}: {self.reason}"
 
 
 class Display(ABC):
@@ -83,6 +97,10 @@ class Display(ABC):
         """Return the cells of a table that compares runs."""
         text = self.text(result)
         return [] if text is None else [Column(self.heading, text)]
+
+    def answers(self, result: JudgedRun) -> Sequence[Answer]:  # noqa: ARG002 - it need have none
+        """Return answers to questions of people, which stand at the head of a result."""
+        return ()
 
     def moments(self, result: JudgedRun, history: History) -> Sequence[TimedMark]:  # noqa: ARG002 - it need have none
         """Return what its row of the timeline has."""

@@ -21,8 +21,10 @@ from typing import (
 
 from typing_extensions import NotRequired, get_type_hints, is_typeddict
 
+from basu.units import parted
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
 Schema = dict[str, Any]
 
@@ -77,6 +79,31 @@ def record(*, null_: bool = False, about_: str = "", **properties: Schema) -> Sc
         "additionalProperties": False,
         "properties": properties,
     }
+
+
+def record_of(
+    kind: type, more: Mapping[str, Schema] | None = None, *, signed: Collection[str] = (), about: str = ""
+) -> Schema:
+    """Return the schema of a named tuple, with the units at the ends of its names; ``more`` replaces and adds keys.
+
+    Numbers are 0 or more but for those in ``signed``, and a name that ends with ``_share`` has 1 as its highest value.
+    """
+    hints = get_type_hints(kind).items()
+    found: dict[str, Any] = {name: _member(name, each, is_signed=name in signed) for name, each in hints}
+    return record(about_=about, **{**found, **(more or {})})
+
+
+def _member(name: str, kind: Any, *, is_signed: bool) -> Schema:  # noqa: ANN401 - an annotation
+    """Return the schema of one value of a named tuple."""
+    if get_origin(kind) is tuple:
+        return listing(_member("", get_args(kind)[0], is_signed=False))
+    kinds = set(get_args(kind)) or {kind}
+    low, null = None if is_signed else 0, types.NoneType in kinds
+    if float in kinds:
+        return number(parted(name)[1], low=low, high=1 if name.endswith("_share") else None, null=null)
+    if bool in kinds or str in kinds:
+        return flag(null=null) if bool in kinds else text(null=null)
+    return integer(low=low, null=null) if int in kinds else schema_of(kind)
 
 
 def _type(name: str, *, null: bool) -> str | list[str]:

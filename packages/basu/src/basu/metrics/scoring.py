@@ -6,10 +6,12 @@ other.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from basu.errors import UserError
 from basu.files import read_json
@@ -17,93 +19,54 @@ from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
 from basu.metrics.passengers.felt import STANDING, PassengerPlace
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2
-from basu.settings.option import Layer, Option, Settings, to_json
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from basu.settings.option import Layer, Settings, option, to_json
 
 TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
 THRESHOLD_M = 2.0
-SCORING = "scoring"  # the group of these options on help pages
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scoring(Settings):
     """The adjustable part of a judgement; the defaults are the thesis's values."""
 
-    penalties: Annotated[
-        Mapping[Infraction, float],
-        Option(
-            help="the factor of each infraction of a kind; may be given several times",
-            group=SCORING,
-            flag="--penalty",
-            metavar="KIND=FACTOR",
-            least=0.0,
-            most=1.0,
-        ),
-    ] = field(default_factory=lambda: dict(DEFAULT_PENALTIES))
-    infraction_weight: Annotated[
-        float,
-        Option(
-            help="weight of the infraction score; path following has the rest",
-            group=SCORING,
-            metavar="W",
-            least=0.0,
-            most=1.0,
-        ),
-    ] = 0.8
-    speeding_tolerance_mps: Annotated[
-        float,
-        Option(
-            help="excess over the posted limit at which speeding begins",
-            group=SCORING,
-            flag="--speeding-tolerance",
-            metavar="M/S",
-            unit="m/s",
-            least=0.0,
-        ),
-    ] = TOLERANCE_MPS
-    route_deviation_m: Annotated[
-        float,
-        Option(
-            help="distance from the planned line at which the vehicle is outside the plan",
-            group=SCORING,
-            flag="--route-deviation",
-            metavar="M",
-            unit="m",
-            least=0.0,
-        ),
-    ] = THRESHOLD_M
-    comfort_weights: Annotated[
-        ComfortWeights,
-        Option(
-            help="weight of a part of the passengers' comfort score; may be given several times",
-            group=SCORING,
-            flag="--comfort-weight",
-            metavar="NAME=W",
-            least=0.0,
-        ),
-    ] = field(default_factory=ComfortWeights)
-    standing_place: Annotated[
-        PassengerPlace,
-        Option(
-            help="where passengers stand: forward, right and up from the vehicle's origin",
-            group=SCORING,
-            metavar="F,R,U",
-            unit="m",
-        ),
-    ] = STANDING
-    harsh_stop_mps2: Annotated[
-        float,
-        Option(
-            help="braking as strong as this, felt by standing passengers, is a harsh stop",
-            group=SCORING,
-            flag="--harsh-stop",
-            metavar="M/S2",
-            unit="m/s²",
-            least=0.0,
-        ),
-    ] = HARSH_MPS2
+    GROUP = "scoring"
+    FILE_FLAG = "--scoring"
+
+    penalties: Mapping[Infraction, float] = option(
+        dict(DEFAULT_PENALTIES),
+        "the factor of each infraction of a kind; may be given several times",
+        flag="--penalty",
+        metavar="KIND=FACTOR",
+        least=0.0,
+        most=1.0,
+    )
+    infraction_weight: float = option(
+        0.8, "weight of the infraction score; path following has the rest", least=0.0, most=1.0
+    )
+    speeding_tolerance_mps: float = option(
+        TOLERANCE_MPS, "excess over the posted limit at which speeding begins", least=0.0
+    )
+    route_deviation_m: float = option(
+        THRESHOLD_M, "distance from the planned line at which the vehicle is outside the plan", least=0.0
+    )
+    comfort_weights: ComfortWeights = option(
+        ComfortWeights(),
+        "weight of each part of the passengers' comfort score",
+        flag="--comfort-weight",
+        in_files="""write it as in --scoring '{"comfort_weights": {"service": 0.5}}', or name a file with that""",
+        least=0.0,
+    )
+    standing_place: PassengerPlace = option(
+        STANDING,
+        "where passengers stand, from the vehicle's origin",
+        unit="m",
+        default_text="0.7 forward, 0.5 right, 0.3 up",
+        in_files="write it as in --scoring "
+        """'{"standing_place": {"forward_m": 0.7, "right_m": 0.5, "up_m": 0.3}}', or name a file with that""",
+    )
+    harsh_stop_mps2: float = option(
+        HARSH_MPS2, "braking as strong as this, felt by standing passengers, is a harsh stop", least=0.0
+    )
 
     @property
     def path_following_weight(self) -> float:
@@ -144,13 +107,18 @@ def scoring_layer(document: object, source: str) -> Layer:
     return Layer(document, source)
 
 
-def read_scoring_file(path: Path) -> Layer:
-    """The values in a scoring file.
+def read_scoring(given: str) -> Layer:
+    """The values of ``--scoring``: a file, or JSON as text.
 
     Raises:
         UserError: it cannot be read, is no JSON, or no scoring.
     """
-    return scoring_layer(read_json(path, "the scoring file"), f"the scoring file {path}")
+    if not given.lstrip().startswith("{"):
+        return scoring_layer(read_json(Path(given), "the scoring file"), f"the scoring file {given}")
+    try:
+        return scoring_layer(json.loads(given), "--scoring")
+    except json.JSONDecodeError as error:
+        raise UserError(f"--scoring {given} is no JSON: {error}") from None
 
 
 def scoring_of_run(config_file: Path) -> Layer:

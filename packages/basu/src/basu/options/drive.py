@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 from basu.conditions import SimulatorSpec
 from basu.options.agent import AgentOptions
 from basu.options.folders import RecordOptions
-from basu.options.groups import CONDITIONS
 from basu.options.simulator import SimulatorOptions
 from basu.options.sumo import SumoOptions
 from basu.options.window import WindowOptions
-from basu.settings.option import Option
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriveOptions(WindowOptions, RecordOptions, SimulatorOptions, SumoOptions, AgentOptions):
     """The options that runs and cases share; the fields stand in the order of the bases, the last one first."""
-
-    repetitions: Annotated[int, Option(help="drives of each route or case", group=CONDITIONS, metavar="N", least=1)] = 1
 
     @property
     def simulator(self) -> SimulatorSpec:

@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 from basu.errors import UserError
 from basu.options.agent import AgentOptions
 from basu.options.drive import DriveOptions
 from basu.options.folders import SeriesOptions
-from basu.options.groups import AGENT
 from basu.options.routes import RouteOptions
 from basu.options.shuttles import ShuttleOptions
-from basu.settings.option import Option, Settings
+from basu.settings.option import Settings, option
 
 
 @dataclass(frozen=True, kw_only=True)
 class ChosenAgent(Settings):
     """The one agent of ``basu run``."""
 
-    agent: Annotated[
-        str,
-        Option(
-            help="a name (`basu list`), FILE.py, or FILE.py:Class",
-            group=AGENT,
-            positional=True,
-            flag="--agent",
-            metavar="AGENT",
-            is_file=True,
-        ),
-    ] = "basic"
+    GROUP = "agent"
+
+    agent: str = option(
+        "basic",
+        "a name (`basu list`), FILE.py, or FILE.py:Class",
+        positional=True,
+        flag="--agent",
+        metavar="AGENT",
+        is_file=True,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 from basu.conditions import ROLE
 from basu.errors import UserError
-from basu.options.groups import AGENT
-from basu.settings.option import Option, Settings
+from basu.settings.option import Settings, option
 
 WITH_ROLE = re.compile(r"([A-Za-z][A-Za-z0-9_-]*)=(.+)")
 
@@ -25,39 +24,25 @@ class Beside(NamedTuple):
 class ShuttleOptions(Settings):
     """How many vehicles a run tests at once, and which agents drive them."""
 
-    shuttles: Annotated[
-        int,
-        Option(
-            help="vehicles under test at once in one world, each with an agent, a record and a judgement of its own",
-            group=AGENT,
-            is_rare=True,
-            metavar="N",
-            least=1,
-            most=8,
-        ),
-    ] = 1
-    beside: Annotated[
-        tuple[str, ...],
-        Option(
-            help="the agent of the next shuttle, in place of AGENT again; may be given several times",
-            group=AGENT,
-            is_rare=True,
-            metavar="[ROLE=]AGENT",
-            is_file=True,
-        ),
-    ] = ()
-    headway_m: Annotated[
-        float,
-        Option(
-            help="along the route from one shuttle to the next at the start",
-            group=AGENT,
-            is_rare=True,
-            flag="--headway",
-            metavar="M",
-            unit="m",
-            above=0.0,
-        ),
-    ] = 100.0
+    GROUP = "agent"
+
+    shuttles: int = option(
+        1,
+        "vehicles under test at once in one world, each with an agent, a record and a judgement of its own",
+        is_rare=True,
+        least=1,
+        most=8,
+    )
+    beside: tuple[str, ...] = option(
+        (),
+        "the agent of the next shuttle, in place of AGENT again; may be given several times",
+        is_rare=True,
+        metavar="[ROLE=]AGENT",
+        is_file=True,
+    )
+    headway_m: float = option(
+        100.0, "along the route from one shuttle to the next at the start", is_rare=True, above=0.0
+    )
 
     @property
     def besides(self) -> tuple[Beside, ...]:

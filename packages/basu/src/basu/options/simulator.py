@@ -4,71 +4,34 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 from basu.errors import UserError
-from basu.options.groups import SIMULATOR
-from basu.settings.option import Option, Settings
+from basu.settings.option import Settings, option
 
 
 @dataclass(frozen=True, kw_only=True)
 class SimulatorOptions(Settings):
     """The simulators of a command."""
 
-    host: Annotated[
-        str | None,
-        Option(
-            help="a running simulator",
-            group=SIMULATOR,
-            metavar="HOST",
-            default_text="start one and end it",
-            repeats=False,
-        ),
-    ] = None
-    port: Annotated[
-        int, Option(help="port of --host", group=SIMULATOR, metavar="N", least=1, most=65_535, repeats=False)
-    ] = 2000
-    timeout_s: Annotated[
-        float,
-        Option(
-            help="time to wait for the simulator's answer",
-            group=SIMULATOR,
-            flag="--timeout",
-            metavar="S",
-            unit="s",
-            above=0.0,
-            repeats=False,
-        ),
-    ] = 20.0
-    workers: Annotated[
-        int,
-        Option(
-            help="runs that are driven at the same time, each in a simulator of its own",
-            group=SIMULATOR,
-            metavar="N",
-            least=1,
-            repeats=False,
-        ),
-    ] = 1
-    maps: Annotated[
-        tuple[Path, ...],
-        Option(
-            help="offer every .xodr of a folder as a map; may be given several times",
-            group=SIMULATOR,
-            metavar="DIR",
-            is_file=True,
-        ),
-    ] = ()
-    upload_map: Annotated[
-        Path | None,
-        Option(
-            help="send this OpenDRIVE map to the simulator at --host; routes of its town are driven there",
-            group=SIMULATOR,
-            metavar="FILE.xodr",
-            is_file=True,
-            repeats=False,
-        ),
-    ] = None
+    GROUP = "simulator"
+
+    host: str | None = option(
+        None, "a running simulator", metavar="HOST", default_text="start one and end it", repeats=False
+    )
+    port: int = option(2000, "port of --host", least=1, most=65_535, repeats=False)
+    timeout_s: float = option(20.0, "time to wait for the simulator's answer", above=0.0, repeats=False)
+    workers: int = option(
+        1, "runs that are driven at the same time, each in a simulator of its own", least=1, repeats=False
+    )
+    maps: tuple[Path, ...] = option(
+        (), "offer every .xodr of a folder as a map; may be given several times", metavar="DIR"
+    )
+    upload_map: Path | None = option(
+        None,
+        "send this OpenDRIVE map to the simulator at --host; routes of its town are driven there",
+        metavar="FILE.xodr",
+        repeats=False,
+    )
 
     def check(self) -> None:
         """Check the options of maps.

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from basu.conditions import Sumo, Traffic
 from basu.errors import UserError
 from basu.options.conditions import ConditionOptions
-from basu.options.groups import CONDITIONS
-from basu.settings.option import Option
+from basu.settings.option import option
 
 SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
 RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
@@ -21,74 +20,41 @@ RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
 class SumoOptions(ConditionOptions):
     """The conditions of a drive, with SUMO."""
 
+    GROUP = "conditions"
     GONE: ClassVar[Mapping[str, str]] = {
         "sumo_sublane": 'write <lateral-resolution value="0.8"/> into the .sumocfg and name it with --sumo'
     }
 
-    sumo: Annotated[
-        str | None,
-        Option(
-            help="drive amid SUMO's traffic: FILE.sumocfg, random (--vehicles N on random trips), demand (of the "
-            "town) or none; without a word: demand",
-            group=CONDITIONS,
-            metavar="WHAT",
-            bare=SUMO_DEMAND,
-            default_text="as the agent says",
-            advice="an agent is named before --sumo, as in `basu run basic --sumo`",
-        ),
-    ] = None
-    sumo_radius_m: Annotated[
-        float | None,
-        Option(
-            help="show SUMO's vehicles within this of the vehicle under test; the others drive on in SUMO",
-            group=CONDITIONS,
-            flag="--sumo-radius",
-            metavar="M",
-            unit="m",
-            above=0.0,
-            default_text="show all",
-        ),
-    ] = None
-    sumo_lights: Annotated[
-        Literal["carla", "sumo", "none"],
-        Option(help="which side has the traffic lights; none: each its own", group=CONDITIONS),
-    ] = "carla"
-    sumo_port: Annotated[
-        int | None,
-        Option(
-            help="TraCI port of a running SUMO on this machine",
-            group=CONDITIONS,
-            metavar="N",
-            least=1,
-            most=65_535,
-            default_text="SUMO in this process",
-        ),
-    ] = None
-    sumo_hour: Annotated[
-        float | None,
-        Option(
-            help="hour of the day of the demand that is made, such as 17.5",
-            group=CONDITIONS,
-            metavar="H",
-            least=0.0,
-            most=23.99,
-            default_text="the hour that the route stands for",
-        ),
-    ] = None
-    sumo_scale: Annotated[
-        float | None,
-        Option(
-            help="so many times the demand",
-            group=CONDITIONS,
-            metavar="X",
-            least=0.0,
-            default_text="the demand as it is",
-        ),
-    ] = None
-    sumo_output: Annotated[
-        bool,
-        Option(help="keep SUMO's own outputs in the run's folder: trip information, safety measures", group=CONDITIONS),
-    ] = False
+    sumo: str | None = option(
+        None,
+        "drive amid SUMO's traffic: FILE.sumocfg, random (--vehicles N on random trips), demand (of the "
+        "town) or none; without a word: demand",
+        metavar="WHAT",
+        bare=SUMO_DEMAND,
+        default_text="as the agent says",
+        advice="an agent is named before --sumo, as in `basu run basic --sumo`",
+    )
+    sumo_radius_m: float | None = option(
+        None,
+        "show SUMO's vehicles within this of the vehicle under test; the others drive on in SUMO",
+        above=0.0,
+        default_text="show all",
+    )
+    sumo_lights: Literal["carla", "sumo", "none"] = option(
+        "carla", "which side has the traffic lights; none: each its own"
+    )
+    sumo_port: int | None = option(
+        None, "TraCI port of a running SUMO on this machine", least=1, most=65_535, default_text="SUMO in this process"
+    )
+    sumo_hour: float | None = option(
+        None,
+        "hour of the day of the demand that is made, such as 17.5",
+        least=0.0,
+        most=23.99,
+        default_text="the hour that the route stands for",
+    )
+    sumo_scale: float | None = option(None, "so many times the demand", least=0.0, default_text="the demand as it is")
+    sumo_output: bool = option(False, "keep SUMO's own outputs in the run's folder: trip information, safety measures")
 
     @property
     def traffic(self) -> Traffic:

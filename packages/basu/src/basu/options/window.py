@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
-from basu.options.groups import WINDOW
-from basu.settings.option import Option, Settings
+from basu.settings.option import Settings, option
 
 _PAGE = "--watch shows the drive, its sensors and its figures in a page of the browser"
 
@@ -17,6 +16,7 @@ _PAGE = "--watch shows the drive, its sensors and its figures in a page of the b
 class WindowOptions(Settings):
     """What is shown of a drive, and keys."""
 
+    GROUP = "window, viewer and keys"
     GONE: ClassVar[Mapping[str, str]] = {
         "hud": _PAGE,
         "hud_camera": _PAGE,
@@ -24,30 +24,13 @@ class WindowOptions(Settings):
         "hud_screenshot": "press K in the page of --watch, or make a film of the run with `basu watch RUN --film FILE`",
     }
 
-    viewer: Annotated[
-        bool,
-        Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
-    ] = False
-    watch: Annotated[
-        bool,
-        Option(
-            help="show the drive in a page of the browser and print its address; P takes over control",
-            group=WINDOW,
-            repeats=False,
-        ),
-    ] = False
-    keys: Annotated[
-        str | None,
-        Option(
-            help="play a recorded session of keys, such as data/human_session.json",
-            group=WINDOW,
-            metavar="FILE",
-            is_file=True,
-        ),
-    ] = None
-    record_keys: Annotated[
-        Path | None,
-        Option(
-            help="write the keys that a person presses to a session file", group=WINDOW, metavar="FILE", repeats=False
-        ),
-    ] = None
+    viewer: bool = option(False, "stream the run to Rerun's viewer and keep it as run.rrd", repeats=False)
+    watch: bool = option(
+        False, "show the drive in a page of the browser and print its address; P takes over control", repeats=False
+    )
+    keys: str | None = option(
+        None, "play a recorded session of keys, such as data/human_session.json", metavar="FILE", is_file=True
+    )
+    record_keys: Path | None = option(
+        None, "write the keys that a person presses to a session file", metavar="FILE", repeats=False
+    )

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import BaseManager
+    from basu.managers.person import Person
     from basu.options.drive import DriveOptions
 
 
@@ -39,14 +40,31 @@ class Output(Protocol):
 def _wanted(options: DriveOptions, *, has_person: bool) -> dict[str, str]:
     """Return the outputs of this project that a drive needs, each with what needs it."""
     ros = {"--ros2": options.ros2, "--ros1": options.ros1, "--rosbag": options.rosbag is not None}
-    keys = {"--keys": options.keys, "--record-keys": options.record_keys}
-    watched = "--watch" if options.watch else None
-    found = {"window": watched or next((flag for flag, value in keys.items() if value is not None), None)}
-    if has_person:
-        found["window"] = "a person at the wheel"
+    found = {"window": "a person at the wheel" if has_person else _flag_of_person(options)}
     found["viewer"] = "--viewer" if options.viewer else None
     found["ros"] = next((flag for flag, is_set in ros.items() if is_set), None)
     return {name: flag for name, flag in found.items() if flag is not None}
+
+
+def _flag_of_person(options: DriveOptions) -> str | None:
+    """Return the option that lets a person or recorded keys drive; None where there is none."""
+    flags = {"--watch": options.watch or None, "--keys": options.keys, "--record-keys": options.record_keys}
+    return next((flag for flag, value in flags.items() if value is not None), None)
+
+
+def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
+    """Return the person at this drive's page or recorded keys; None where an agent drives unwatched.
+
+    ``by_hand`` says whether the person drives at first.
+
+    Raises:
+        UserError: the plugin is not installed, or no such session exists.
+    """
+    flag = _flag_of_person(options)
+    if flag is None and not by_hand:
+        return None
+    made: Person = plugins.load(plugins.PARTS, "person", flag or "a person at the wheel")(options, by_hand=by_hand)
+    return made
 
 
 def _outputs(options: DriveOptions, *, has_person: bool) -> Iterator[Output]:

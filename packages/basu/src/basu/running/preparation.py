@@ -21,9 +21,9 @@ from basu.episode.world import weather_called
 from basu.errors import AgentCrashedError, UserError
 from basu.files import PACKAGE_FOLDER, find, places
 from basu.managers.agents_manager import AgentsManager
-from basu.managers.person import person_for
 from basu.options.sumo import SUMO_OFF
 from basu.routing.route_file import OWN_ROUTE, RouteDescription, read_routes, subset
+from basu.running.outputs import person_for
 from basu.running.shuttles import SensorSet, Shuttle, beside
 from basu.scenarios.route_scenarios import scenarios_on
 
@@ -96,7 +96,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = given or _found(options, options.agent, 1)
+    loaded = given or agent_of(options, options.agent)
     with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
         agents = new_agents(loaded, options, options.seed, options.routes, has_conditions=has_conditions)
         sensors = sensor_set(agents, loaded)
@@ -130,7 +130,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
     return Plan((first, *_besides(options, first, given)), tuple(jobs))
 
 
-def _found(options: RunOptions, agent: str, shuttle: int) -> FoundAgent:
+def agent_of(options: DriveOptions, agent: str, shuttle: int = 1) -> FoundAgent:
     """Return an agent by its name or file, in a process of its own for each shuttle.
 
     Raises:
@@ -157,7 +157,7 @@ def _besides(options: RunOptions, first: Shuttle, given: FoundAgent | None) -> l
     found: list[Shuttle] = []
     for number, each in enumerate(options.besides, 2):
         typed = each.agent or options.agent
-        loaded = given if given is not None and each.agent is None else _found(options, typed, number)
+        loaded = given if given is not None and each.agent is None else agent_of(options, typed, number)
         if loaded.is_human:
             raise UserError(
                 f"'{typed}' drives by a person's keys, and a person drives the first shuttle only; give the agent of "

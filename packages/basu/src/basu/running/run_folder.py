@@ -16,9 +16,7 @@ from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE,
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
 from basu.records.recording_files import LOG_FILE
-from basu.settings.command_line import words_of
 from basu.settings.document import RUN, config_document
-from basu.settings.option import fields_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -81,7 +79,7 @@ def run_config(
         access=access,
         ignored=ignored,
     )
-    document = config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description))
+    document = config_document(RUN, again, scoring, _files(again, loaded, wishes, description))
     return {**document, **facts, **({} if shuttle is None else {"shuttle": dict(shuttle)})}
 
 
@@ -155,12 +153,6 @@ def options_again(options: RunOptions, description: RouteDescription, seed: int)
         seed=seed,
         keys=keys,
     )
-
-
-def command(options: RunOptions, scoring: Scoring) -> list[str]:
-    """Return the command line of a run: the options that differ from their defaults, but none of the session."""
-    session = [field.name for field in fields_of(RunOptions) if not field.option.repeats]
-    return ["basu", "run", *words_of(options, but=session), *words_of(scoring)]
 
 
 def _files(

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from basu.errors import UserError
-from basu.settings.forms import choices, form_of
+from basu.settings.forms import form_of
 from basu.settings.option import Field, Settings, bounds, fields_of, gone_from, suggestion
 
 TYPED = "typed__"  # begins the names of options in the namespace
@@ -58,15 +58,16 @@ def add_options(parser: argparse.ArgumentParser, model: type[Settings], only: It
     wanted = None if only is None else set(only)
     if isinstance(parser, Parser) and wanted is None:
         parser.gone |= {f"--{name.replace('_', '-')}": sentence for name, sentence in gone_from(model).items()}
+        parser.gone |= {field.flag: field.option.in_files for field in fields_of(model) if field.option.in_files}
     groups: dict[str, argparse._ArgumentGroup] = {}
     for field in fields_of(model):
-        if wanted is None or field.name in wanted:
-            group = field.option.group
-            if group not in groups:
-                groups[group] = next((g for g in parser._action_groups if g.title == group), None) or (  # noqa: SLF001
-                    parser.add_argument_group(group)
-                )
-            _add(groups[group], field)
+        if (wanted is None or field.name in wanted) and not field.option.in_files:
+            if field.group not in groups:
+                groups[field.group] = next(
+                    (each for each in parser._action_groups if each.title == field.group),  # noqa: SLF001
+                    None,
+                ) or parser.add_argument_group(field.group)
+            _add(groups[field.group], field)
 
 
 def typed(model: type[Settings], arguments: argparse.Namespace) -> dict[str, Any]:
@@ -87,27 +88,11 @@ def typed(model: type[Settings], arguments: argparse.Namespace) -> dict[str, Any
     return found
 
 
-def words_of(settings: Settings, but: Iterable[str] = ()) -> list[str]:
-    """The words of a command line that make ``settings``, without the fields in ``but``; defaults are not said."""
-    unsaid = set(but)
-    positional: list[str] = []
-    flags: list[str] = []
-    for field in fields_of(type(settings)):
-        if field.name not in unsaid:
-            value = getattr(settings, field.name)
-            if field.option.positional:
-                positional += form_of(field).words(value, None)
-            else:
-                flags += form_of(field).words(value, field.default)
-    return [*positional, *flags]
-
-
 def described(field: Field) -> str:
     """The help of an option: meaning, bounds, default."""
     option = field.option
-    notes = ", ".join(note for note in (option.unit and f"in {option.unit}", bounds(option)) if note)
+    text = ", ".join(note for note in (option.help, field.unit and f"in {field.unit}", bounds(option)) if note)
     usual = default_text(field)
-    text = f"{option.help}, {notes}" if notes else option.help
     return f"{text} (default: {usual})" if usual else text
 
 
@@ -124,9 +109,8 @@ def _add(group: argparse._ArgumentGroup, field: Field) -> None:
     """One option."""
     form, option = form_of(field), field.option
     shown: dict[str, Any] = {"help": described(field).replace("%", "%%"), "default": None}
-    metavar = option.metavar or ("|".join(map(str, choices(field.type))) or None)
-    if metavar is not None:
-        shown["metavar"] = metavar
+    if field.metavar is not None:
+        shown["metavar"] = field.metavar
     if not option.positional:
         group.add_argument(field.flag, dest=TYPED + field.name, **form.arguments(), **shown)
         if field.type is bool and option.repeats:
@@ -140,7 +124,7 @@ def _add(group: argparse._ArgumentGroup, field: Field) -> None:
     group.add_argument(TYPED + field.name, **more, **shown)
     if option.flag is not None:
         same = "the same, in ScenarioRunner's way"
-        group.add_argument(option.flag, dest=f"{TYPED}{field.name}_flag", metavar=metavar, help=same)
+        group.add_argument(option.flag, dest=f"{TYPED}{field.name}_flag", metavar=field.metavar, help=same)
 
 
 def _opposite(flag: str) -> str:

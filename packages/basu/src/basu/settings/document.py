@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 import basu
 from basu.errors import UserError
-from basu.files import PACKAGE_FOLDER, read_json
+from basu.files import PACKAGE_FOLDER, other_version, read_json
+from basu.settings.forms import words_of
 from basu.settings.option import Layer, Settings, fields_of, is_told, to_json
 
 CONFIG_VERSION = 2
@@ -31,16 +32,14 @@ class Config(NamedTuple):
     warnings: tuple[str, ...]  # why the run may differ from the one that left the document
 
 
-def config_document(
-    kind: str, options: Settings, scoring: Settings | None, command: Iterable[str], files: Iterable[Path]
-) -> dict[str, Any]:
+def config_document(kind: str, options: Settings, scoring: Settings | None, files: Iterable[Path]) -> dict[str, Any]:
     """The document without what a command adds as information. ``files`` decide over the run's outcome."""
     plain = to_json(options)
     told = [field for field in fields_of(type(options)) if is_told(field, options)]
     return {
         "schema_version": CONFIG_VERSION,
         "kind": kind,
-        "command": list(command),
+        "command": command_of(kind, options, scoring),
         "options": {field.name: plain[field.name] for field in told if field.option.repeats},
         **({} if scoring is None else {"scoring": to_json(scoring)}),
         "session": {field.name: plain[field.name] for field in told if not field.option.repeats},
@@ -53,6 +52,12 @@ def config_document(
             "python": platform.python_version(),
         },
     }
+
+
+def command_of(kind: str, options: Settings, scoring: Settings | None = None) -> list[str]:
+    """Return the command line of a run: the options that differ from their defaults, but none of the session."""
+    session = [field.name for field in fields_of(type(options)) if not field.option.repeats]
+    return ["basu", *kind.split(), *words_of(options, but=session), *([] if scoring is None else words_of(scoring))]
 
 
 def read_config(path: Path, kind: str, model: type[Settings]) -> Config:
@@ -72,7 +77,7 @@ def read_config(path: Path, kind: str, model: type[Settings]) -> Config:
             f"every option; give the options again (it says: {_old_command(document)})"
         )
     if found != CONFIG_VERSION:
-        raise UserError(f"the config {file} has the schema version {found!r}, and this basu reads {CONFIG_VERSION}")
+        raise other_version(file, found, CONFIG_VERSION)
     if document.get("kind") != kind:
         other = document.get("kind")
         hint = f"use `basu {other} --config {file}`" if other in {RUN, SCENARIO_RUN} else f"it must be '{kind}'"
@@ -108,9 +113,9 @@ def _found(model: type[Settings], values: Mapping[str, Any], folder: Path) -> di
     changed: dict[str, Any] = {}
     for field in fields_of(model):
         value = values.get(field.name)
-        if field.option.is_file and isinstance(value, str):
+        if field.names_files and isinstance(value, str):
             changed[field.name] = _here_or_there(value, folder)
-        elif field.option.is_file and isinstance(value, list):
+        elif field.names_files and isinstance(value, list):
             changed[field.name] = [_here_or_there(each, folder) if isinstance(each, str) else each for each in value]
     return changed
 

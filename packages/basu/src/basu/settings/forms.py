@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-import types
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
+from typing import Any, TypeAlias, get_args, get_origin
 
 from typing_extensions import override
 
 from basu.errors import UserError
-from basu.settings.option import Field, to_json
+from basu.settings.option import Field, Settings, alternatives, fields_of, to_json
 
 Value: TypeAlias = Any  # of any option: its type is that of the field
 
@@ -100,22 +100,6 @@ class Commas(Form):
         return ",".join(scalar_text(each) for each in value)
 
 
-class Size(Form):
-    """Width and height: ``960x540``."""
-
-    @override
-    def read(self, given: Value) -> Value:
-        width, _, height = given.partition("x")
-        if not (width.isascii() and height.isascii() and width.isdigit() and height.isdigit()):
-            raise UserError(f"{self.field.flag} {given}: write WIDTHxHEIGHT in {self.field.option.unit}, as in 960x540")
-        return [int(width), int(height)]
-
-    @override
-    def text(self, value: Value) -> str:
-        width, height = value
-        return f"{width}x{height}"
-
-
 class Pairs(Form):
     """Pairs of a name and a text: ``NAME=VALUE``, the flag once for each."""
 
@@ -172,26 +156,7 @@ class Named(Form):
         return ", ".join(f"{name}={scalar_text(number)}" for name, number in to_json(value).items())
 
 
-class Coordinates(Form):
-    """A group of numbers in their order: ``0.7,0.5,0.3``."""
-
-    @override
-    def read(self, given: Value) -> Value:
-        names = self.field.type._fields
-        try:
-            return dict(zip(names, map(float, given.split(",")), strict=True))
-        except ValueError:
-            usual = self.text(self.field.default)
-            raise UserError(
-                f"{self.field.flag} {given}: write {len(names)} numbers in {self.field.option.unit}, such as {usual}"
-            ) from None
-
-    @override
-    def text(self, value: Value) -> str:
-        return ",".join(scalar_text(number) for number in value)
-
-
-STYLES: dict[str, type[Form]] = {"commas": Commas, "size": Size, "pairs": Pairs}
+STYLES: dict[str, type[Form]] = {"commas": Commas, "pairs": Pairs}
 
 
 def form_of(field: Field) -> Form:
@@ -205,14 +170,23 @@ def form_of(field: Field) -> Form:
         return Repeated(field)
     if get_origin(kind) is Mapping or dataclasses.is_dataclass(kind):
         return Named(field)
-    if hasattr(kind, "_fields"):
-        return Coordinates(field)
     return Form(field)
 
 
-def choices(kind: Value) -> tuple[Any, ...]:
-    """The values of a ``Literal``; none for other types."""
-    return next((get_args(each) for each in _alternatives(kind) if get_origin(each) is Literal), ())
+def words_of(settings: Settings, but: Iterable[str] = ()) -> list[str]:
+    """The words of a command line that make ``settings``, without the fields in ``but``; defaults are not said."""
+    positional: list[str] = []
+    flags: list[str] = []
+    in_files: dict[str, Value] = {}
+    unsaid = set(but)
+    for field in fields_of(type(settings)):
+        value = getattr(settings, field.name)
+        if field.option.in_files and value != field.default:
+            in_files[field.name] = to_json(value)
+        elif field.name not in unsaid:
+            default = None if field.option.positional else field.default
+            (positional if field.option.positional else flags).extend(form_of(field).words(value, default))
+    return [*positional, *flags, *([settings.FILE_FLAG, json.dumps(in_files)] if in_files else [])]
 
 
 def option_words(flag: str, text: str) -> list[str]:
@@ -227,13 +201,9 @@ def scalar_text(value: Value) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def _alternatives(kind: Value) -> tuple[Any, ...]:
-    return get_args(kind) if get_origin(kind) in {types.UnionType, Union} else (kind,)
-
-
 def _scalar(text: str, kind: Value) -> Value:
     """A text as a number, where the type has one and the text is one."""
-    kinds = _alternatives(kind)
+    kinds = alternatives(kind)
     if str in kinds or Path in kinds:
         return text
     for number in (int, float):

@@ -1,20 +1,27 @@
 """The declaration of an option: what one field of a settings model is called, means and may be.
 
-A settings model is a frozen dataclass that inherits from ``Settings``. A field with an ``Option`` in its annotation is
-an option; its type, default and bounds hold for the command line, for JSON and for Python alike.
+A settings model is a frozen dataclass that inherits from ``Settings``. A field with a default by `option` is an option.
+Its type, default and bounds hold for the command line, for JSON and for Python alike. The name of the field gives the
+flag and the unit: ``timeout_s`` is ``--timeout S``, in s.
 """
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import difflib
 import enum
+import inspect
 import math
+import types
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from basu.errors import UserError
+from basu.units import parted
+
+T = TypeVar("T")
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,11 +29,11 @@ class Option:
     """What an option means. Numbers inside a mapping or a group of numbers have its bounds as well."""
 
     help: str
-    group: str = "options"  # of the help page
     flag: str | None = None  # on the command line; None: from the field's name
     positional: bool = False  # may be given without its flag
-    metavar: str | None = None
-    unit: str = ""
+    in_files: str = ""  # it has no flag, since few need it: what to write instead of the one of earlier versions
+    metavar: str | None = None  # None: from the type and the field's name
+    unit: str = ""  # where the field's name does not end with it
     least: float = -math.inf
     most: float = math.inf
     above: float = -math.inf  # as `least`, but not itself allowed
@@ -36,23 +43,59 @@ class Option:
     inverted: bool = False  # the flag sets False, as in --no-scenarios
     advice: str = ""  # ends a complaint about a value of the wrong type
     rival: str | None = None  # options of one rivalry exclude each other
-    is_file: bool = False  # its values name files, maybe with ":Class" behind them
+    is_file: bool = False  # its texts name files, maybe with ":Class" behind them
     is_rare: bool = False  # it stands in documents where it differs from its default, and else is left out
     repeats: bool = True  # it belongs to what repeats a run; False: where and how long it is run, and what is shown
 
 
+def option(default: T, help_: str, **more: Any) -> T:  # noqa: ANN401 - the further fields of Option
+    """Return the field of an option, for use as the default of a model's field; ``more`` are fields of `Option`."""
+    metadata = {Option: Option(help=help_, **more)}
+    if isinstance(default, dict):
+        return dataclasses.field(default_factory=lambda: copy.copy(default), metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
 class Field(NamedTuple):
-    """An option of a model with its name, type and default."""
+    """An option of a model with its name, type, default and group of the help page."""
 
     name: str
-    type: Any  # without the Option
+    type: Any
     default: Any
     option: Option
+    group: str
 
     @property
     def flag(self) -> str:
         """The option on the command line."""
-        return self.option.flag or f"--{self.name.replace('_', '-')}"
+        return self.option.flag or f"--{parted(self.name)[0].replace('_', '-')}"
+
+    @property
+    def unit(self) -> str:
+        """The unit of the value; empty where it has none."""
+        return self.option.unit or parted(self.name)[1]
+
+    @property
+    def metavar(self) -> str | None:
+        """What stands for the value on the help page; None for a flag without a value."""
+        if self.option.metavar is None and not {int, float}.isdisjoint(alternatives(self.type)):
+            return (parted(self.name)[1] or "N").upper().replace("²", "2")
+        return self.option.metavar or "|".join(map(str, choices(self.type))) or None
+
+    @property
+    def names_files(self) -> bool:
+        """Whether the values name files."""
+        return self.option.is_file or Path in (*alternatives(self.type), *get_args(self.type))
+
+
+def alternatives(kind: Any) -> tuple[Any, ...]:  # noqa: ANN401 - a type
+    """Return the types of a union; for other types the type itself."""
+    return get_args(kind) if get_origin(kind) in {types.UnionType, Union} else (kind,)
+
+
+def choices(kind: Any) -> tuple[Any, ...]:  # noqa: ANN401 - a type
+    """The values of a ``Literal``; none for other types."""
+    return next((get_args(each) for each in alternatives(kind) if get_origin(each) is Literal), ())
 
 
 class OptionError(UserError):
@@ -68,6 +111,8 @@ class Settings:
     """Base of settings models: every instance, however it was made, keeps the bounds of its options."""
 
     __slots__ = ()
+    GROUP: ClassVar[str]  # the group of the model's own options on the help page
+    FILE_FLAG: ClassVar[str] = ""  # the option that takes values of the model as JSON, in a file or as a text
     GONE: ClassVar[Mapping[str, str]] = {}  # options of earlier versions by field name, and what replaces each
     __pydantic_config__: ClassVar[Mapping[str, object]] = {"extra": "forbid", "allow_inf_nan": False}
 
@@ -128,22 +173,19 @@ def fields_of(model: type) -> tuple[Field, ...]:
 
 
 def _read_fields(model: type) -> tuple[Field, ...]:
-    hints = get_type_hints(model, include_extras=True)
-    found = []
-    for field in dataclasses.fields(model):
-        hint = hints[field.name]
-        if get_origin(hint) is Annotated:
-            kind, *more = get_args(hint)
-            options = [each for each in more if isinstance(each, Option)]
-            if options:
-                found.append(Field(field.name, kind, _default(field), options[0]))
-    return tuple(found)
-
-
-def _default(field: dataclasses.Field[Any]) -> Any:  # noqa: ANN401 - of the field's type
-    if field.default_factory is not dataclasses.MISSING:
-        return field.default_factory()
-    return field.default
+    hints = get_type_hints(model)
+    bases = [base for base in reversed(model.__mro__) if issubclass(base, Settings) and "GROUP" in vars(base)]
+    return tuple(
+        Field(
+            field.name,
+            hints[field.name],
+            field.default if field.default_factory is dataclasses.MISSING else field.default_factory(),
+            field.metadata[Option],
+            next(base.GROUP for base in bases if field.name in inspect.get_annotations(base)),
+        )
+        for field in dataclasses.fields(model)
+        if Option in field.metadata
+    )
 
 
 def to_json(value: Any) -> Any:  # noqa: ANN401 - values of any option

@@ -140,7 +140,7 @@ def _usual(model: type[Settings], name: str) -> dict[str, Any]:
 
 def _unit(model: type[Settings], path: str) -> str:
     name = path.partition(".")[0]
-    unit = next((field.option.unit for field in fields_of(model) if field.name == name), "")
+    unit = next((field.unit for field in fields_of(model) if field.name == name), "")
     return f" {unit}" if unit else ""
 
 

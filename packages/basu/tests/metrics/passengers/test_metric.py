@@ -11,9 +11,11 @@ from basu.routing.timetable import Call, Hours, Timetable
 from fakes.drives import straight_route
 from fakes.rides import braked, eastward, ride
 
+DONE = Outcome(Status.SCENARIO_ENDED, "over")
+
 
 def felt(history: History | None) -> list[str]:
-    return Passengers().lines(judge(Outcome(Status.SCENARIO_ENDED, "over"), history))
+    return Passengers().lines(judge(DONE, history))
 
 
 def test_a_phantom_stop_is_reported_with_its_reason() -> None:
@@ -22,7 +24,7 @@ def test_a_phantom_stop_is_reported_with_its_reason() -> None:
     assert lines[1].strip().startswith("phantom stop at 5.0 s from 3.17 m/s")
 
 
-def test_how_the_timetable_was_kept_is_one_line() -> None:
+def test_how_the_timetable_was_kept_is_an_answer() -> None:
     stops = tuple(Stop(id=i, name=i, s_m=s, x_m=s, y_m=0.0, z_m=0.0, yaw_rad=0.0) for i, s in (("A", 0.0), ("B", 50.0)))
     timetable = Timetable(
         round_s=600.0,
@@ -36,8 +38,10 @@ def test_how_the_timetable_was_kept_is_one_line() -> None:
         ),
     )
     route = replace(straight_route(stops=stops), timetable=timetable)
-    lines = felt(ride(30.0, eastward(lambda t: 0.0 if t < 1.0 or t > 11.0 else 5.0, 31.0), route=route))
-    assert lines[-1] == "timetable         1 of 2 stops on time, -189 to +0 s"
+    result = judge(DONE, ride(30.0, eastward(lambda t: 0.0 if t < 1.0 or t > 11.0 else 5.0, 31.0), route=route))
+    comfortable, on_time = Passengers().answers(result)
+    assert comfortable.question == "comfortable"
+    assert (on_time.question, on_time.sentence) == ("on time", "no: 1 of 2 stops, up to 189 s early")
 
 
 def test_of_a_moment_nothing_is_reported() -> None:

@@ -5,28 +5,24 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
-from basu.metrics.passengers.causes import StopCause
-from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
-from basu.metrics.passengers.near_misses import NEAR_S
+from basu.metrics.display import NO, NOT_JUDGED, YES, Answer
+from basu.metrics.json_schema import flag, integer, listing, mapping, number, record, record_of, text
+from basu.metrics.passengers.causes import Cause
+from basu.metrics.passengers.comfort_score import Harm, Vibration
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2, Balance, PassengerPlace
+from basu.metrics.passengers.harsh_stops import HarshStop
+from basu.metrics.passengers.near_misses import NEAR_S, Party
+from basu.metrics.passengers.service import EARLY_S, LATE_S, Visit
 from basu.metrics.passengers.verdict import judge
 from basu.metrics.registry import Column, Drive, Metric, register
 from basu.outcome import Status
 
 if TYPE_CHECKING:
-    from basu.metrics.passengers.causes import Cause
-    from basu.metrics.passengers.harsh_stops import HarshStop
-    from basu.metrics.passengers.near_misses import Party
     from basu.metrics.passengers.verdict import PassengerJudgement
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
-_PLACE = record(
-    about_="where the passenger stands, from the vehicle's origin",
-    forward_m=number("m"),
-    right_m=number("m"),
-    up_m=number("m"),
-)
+CALM = frozenset({"not uncomfortable", "a little uncomfortable"})  # the mildest reactions of ISO 2631-1, annex C.2.3
 _THRESHOLDS = record(
     step_mps2=number("m/s²", low=0),
     grip_mps2=number("m/s²", low=0),
@@ -41,80 +37,13 @@ _LARGEST = record(
     jerk_along_mps3=number("m/s³", low=0),
     jerk_across_mps3=number("m/s³", low=0),
 )
-_BALANCE = record(
-    moving_s=number("s", low=0),
-    step_s=number("s", low=0),
-    step_share=number(low=0, high=1),
-    grip_s=number("s", low=0),
-    grip_share=number(low=0, high=1),
-    worst_mps2=number("m/s²", low=0),
-    worst_t_s=number("s", low=0),
-)
-_VIBRATION = record(
-    about_="ISO 2631-1, weighted r.m.s.",
-    along_mps2=number("m/s²", low=0),
-    across_mps2=number("m/s²", low=0),
-    up_mps2=number("m/s²", low=0),
-    total_mps2=number("m/s²", low=0),
-    transient_mps2=number("m/s²", low=0),
-    dose_mps175=number("m/s^1.75", low=0),
-    crest_factor=number(low=0),
-    sickness_dose_mps15=number("m/s^1.5", low=0),
-    reactions=listing(text()),
-)
-_CAUSE = record(
-    kind=choice([kind.value for kind in StopCause]),
-    away_m=number("m", null=True),
-    needed_mps2=number("m/s²", low=0),
-    detail=text(),
-)
-_HARSH_STOP = record(
-    onset_tick=integer(),
-    tick=integer(),
-    end_tick=integer(),
-    t_s=number("s", low=0),
-    from_mps=number("m/s", low=0),
-    to_mps=number("m/s", low=0),
-    strongest_mps2=number("m/s²", low=0),
-    jerk_mps3=number("m/s³", low=0),
-    above_s=number("s", low=0),
-    to_rest=flag(),
-    x_m=number("m"),
-    y_m=number("m"),
-    route_s_m=number("m"),
-    cause=_CAUSE,
-)
-_NEAR_MISS = record(
-    name=text(),
-    ttc_s=number("s", low=0, null=True),
-    ttc_tick=integer(),
-    pet_s=number("s", low=0, null=True),
-    pet_tick=integer(),
-    is_near_miss=flag(),
-    detail=text(),
-    tick=integer(),
-    t_s=number("s", low=0),
-    x_m=number("m"),
-    y_m=number("m"),
-    route_s_m=number("m"),
-)
-_VISIT = record(
-    stop_id=text(),
-    name=text(),
-    served=flag(),
-    arrival_s=number("s", low=0, null=True),
-    departure_s=number("s", low=0, null=True),
-    dwell_s=number("s", low=0, null=True),
-    planned_arrival_s=number("s", low=0, null=True),
-    planned_departure_s=number("s", low=0, null=True),
-    delay_s=number("s", null=True),
-    headway_s=number("s", null=True),
-    on_time=flag(null=True),
-    waiting=integer(low=0, null=True),
-    boarded=integer(low=0, null=True),
-    left_behind=integer(low=0, null=True),
-    alighted=integer(low=0, null=True),
-    mean_wait_s=number("s", low=0, null=True),
+_WHERE = {"x_m": number("m"), "y_m": number("m"), "route_s_m": number("m")}
+_CAUSE = record_of(Cause, {"away_m": number("m", null=True)})
+_SECONDS = number("s", low=0, null=True)
+_NEAR_MISS = record_of(
+    Party,
+    {"ttc_s": _SECONDS, "pet_s": _SECONDS, "tick": integer(low=0), "t_s": number("s", low=0), **_WHERE},
+    signed=("ttc_tick", "pet_tick"),
 )
 
 
@@ -133,23 +62,21 @@ class Passengers(Metric):
         comfort_score=number(low=0, high=1, null=True),
         comfort_parts=mapping(number(low=0, high=1)),
         comfort_weights=mapping(number(low=0)),
-        harm=record(
-            about_="what goes before comfort",
-            contacts=integer(low=0),
-            completion=number(low=0, high=1),
-            near_misses=integer(low=0),
-            rules_broken=integer(low=0),
-            stops_passed=integer(low=0),
-            phantom_stops=integer(low=0),
+        harm=record_of(Harm, {"completion": number(low=0, high=1)}, about="what goes before comfort"),
+        place=record_of(
+            PassengerPlace,
+            about="where the passenger stands, from the vehicle's origin",
+            signed=PassengerPlace._fields,
         ),
-        place=_PLACE,
         thresholds=_THRESHOLDS,
         largest=_LARGEST,
-        balance=_BALANCE,
-        vibration=_VIBRATION,
-        harsh_stops=listing(_HARSH_STOP, "brakings felt above the threshold, with what was ahead"),
+        balance=record_of(Balance),
+        vibration=record_of(Vibration, about="ISO 2631-1, weighted r.m.s."),
+        harsh_stops=listing(
+            record_of(HarshStop, {**_WHERE, "cause": _CAUSE}), "brakings felt above the threshold, with what was ahead"
+        ),
         near_misses=listing(_NEAR_MISS, "actors that came close, by time to collision or post-encroachment time"),
-        service=listing(_VISIT, "each stop against the timetable"),
+        service=listing(record_of(Visit, signed=("delay_s", "headway_s")), "each stop against the timetable"),
     )
 
     def compute(self, drive: Drive) -> dict[str, Any] | None:
@@ -203,9 +130,13 @@ class Passengers(Metric):
                 f"{100.0 * value['balance']['step_share']:.1f} % of the time; "
                 f"{' or '.join(value['vibration']['reactions'])}"
             ),
-            *_timetable(value["service"]),
             *_boarding(value["service"]),
         ]
+
+    def answers(self, result: JudgedRun) -> tuple[Answer, Answer]:
+        """Return whether the drive was comfortable, and whether it was on time."""
+        value = result.metrics[self.name]
+        return _comfortable(value), _on_time(value)
 
     def columns(self, result: JudgedRun) -> list[Column]:
         """Passed, failed, or a dash."""
@@ -214,14 +145,35 @@ class Passengers(Metric):
         return [Column("passengers", said)]
 
 
-def _timetable(visits: list[dict[str, Any]]) -> list[str]:
-    """How the timetable was kept."""
+def _comfortable(value: dict[str, Any] | None) -> Answer:
+    """Answer by the harsh stops and the vibration that passengers feel while they stand."""
+    if value is None or value["comfort_score"] is None:
+        return Answer("comfortable", NOT_JUDGED, "the drive was too short or stood still")
+    stops, reactions = value["harsh_stops"], value["vibration"]["reactions"]
+    score = f"comfort score {value['comfort_score']:.2f} of 1"
+    if stops:
+        worst = max(stops, key=lambda stop: float(stop["strongest_mps2"]))
+        often = "once" if len(stops) == 1 else f"{len(stops)} times"
+        felt = f"felt up to {worst['strongest_mps2']:.1f} m/s² at {worst['t_s']:.1f} s"
+        return Answer("comfortable", NO, f"braked harshly {often}, {felt}; {score}")
+    if CALM.isdisjoint(reactions):
+        return Answer("comfortable", NO, f"vibration is {' or '.join(reactions)}; {score}")
+    return Answer("comfortable", YES, f"no harsh stop; {score}")
+
+
+def _on_time(value: dict[str, Any] | None) -> Answer:
+    """Answer by the timetable of the route."""
+    visits = [] if value is None else value["service"]
     planned = [visit for visit in visits if visit["on_time"] is not None]
     if not planned:
-        return []
-    delays = [visit["delay_s"] for visit in planned if visit["delay_s"] is not None]
-    worst = f", {min(delays):+.0f} to {max(delays):+.0f} s" if delays else ""
-    return [f"timetable         {sum(visit['on_time'] for visit in planned)} of {len(planned)} stops on time{worst}"]
+        return Answer("on time", NOT_JUDGED, "the route has no timetable")
+    kept = sum(visit["on_time"] for visit in planned)
+    delays_s = [float(visit["delay_s"]) for visit in planned if visit["delay_s"] is not None]
+    spread = [f"up to {-min(delays_s):.0f} s early"] if delays_s and min(delays_s) < -EARLY_S else []
+    spread += [f"up to {max(delays_s):.0f} s late"] if delays_s and max(delays_s) > LATE_S else []
+    spread += [f"{len(planned) - len(delays_s)} not reached"] if len(delays_s) < len(planned) else []
+    reason = ", ".join([f"{kept} of {len(planned)} stops", *spread])
+    return Answer("on time", YES if kept == len(planned) else NO, reason)
 
 
 def _boarding(visits: list[dict[str, Any]]) -> list[str]:

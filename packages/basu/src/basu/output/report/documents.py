@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.files import PACKAGE_FOLDER, read_json, write_bytes
+from basu.files import PACKAGE_FOLDER, other_version, read_json, write_bytes
 from basu.metrics.result import Result
 from basu.output.report.streets import read_streets
 from basu.records.history.files import HISTORY_FILE, read_history
@@ -111,6 +111,7 @@ def _numbered(name: str, number: int) -> str:
     return name if number == 1 else f"{name}-{number}"
 
 
+EARLIER_RESULTS = (1, 2)  # of runs with a record that can be judged again
 RESULT_SCHEMA, SERIES_SCHEMA = "result.schema.json", "series.schema.json"
 AN = {
     "object": "an object",
@@ -146,7 +147,10 @@ def read_document(path: Path, schema_name: str) -> dict[str, Any]:
         )
     version, expected = _version(document), schema["properties"]["schema_version"]["const"]
     if version != expected:
-        raise UserError(f"{path} has the schema version {version!r}, and this version of basu reads {expected}")
+        if schema_name == RESULT_SCHEMA and version in EARLIER_RESULTS:
+            again = f"`basu score {path.parent} --write` judges its record by the rules of this version and replaces it"
+            raise other_version(path, version, expected, again)
+        raise other_version(path, version, expected)
     for mistake in mistakes(document, schema):
         raise UserError(f"{path}: {mistake}; the file was changed, or left by another version")
     return dict(document)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
-from basu.files import read_json, write_bytes
+from basu.files import other_version, read_json, write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -75,10 +75,7 @@ def read_sumo(folder: Path) -> SumoRecord | None:
     document: Any = read_json(path, "SUMO's record")
     try:
         if document["schema_version"] != SCHEMA_VERSION:
-            raise UserError(
-                f"{path} has schema version {document['schema_version']}, and this version of basu reads "
-                f"{SCHEMA_VERSION}; score it with the version that its config.json names"
-            )
+            raise other_version(path, document["schema_version"], SCHEMA_VERSION)
         numbers = {name: int(document[name]) for name in _NUMBERS}
         return SumoRecord(
             **numbers,

@@ -10,6 +10,7 @@ import pyarrow as pa
 from basu.errors import UserError
 from basu.records.history.model import FRAME, OTHER
 from basu.records.structured import StructuredArray
+from basu.units import parted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,14 +19,7 @@ if TYPE_CHECKING:
 
     from basu.records.history.model import History
 
-UNITS = {"radps": "rad/s", "mps2": "m/s²", "mps": "m/s", "ns": "N s", "rad": "rad", "m": "m", "s": "s"}
 TABLES = ("frames", "others", "collisions", "lane_invasions")
-
-
-def unit_of(column: str) -> str:
-    """The unit that ends a column's name; nothing for a column without one."""
-    _, _, last = column.rpartition("_")
-    return UNITS.get(last, "") if last != column else ""
 
 
 def to_arrow(history: History) -> pa.Table:
@@ -67,7 +61,7 @@ def to_pandas(history: History, what: str = "frames") -> Any:  # noqa: ANN401 - 
     else:
         rows = [{"tick": e.tick, "marking": marking} for e in history.lane_invasions for marking in e.markings]
     table = pd.DataFrame(rows)
-    table.attrs["units"] = {str(name): unit_of(str(name)) for name in table.columns}
+    table.attrs["units"] = {str(name): parted(str(name))[1] for name in table.columns}
     return table
 
 
@@ -84,7 +78,7 @@ def _collisions(history: History) -> dict[str, Any]:
 
 def _field(name: str, kind: pa.DataType) -> pa.Field:
     """A column with its unit."""
-    unit = unit_of(name)
+    unit = parted(name)[1]
     return pa.field(name, kind, metadata={"unit": unit} if unit else None)
 
 

@@ -14,15 +14,14 @@ from basu.outcome import Outcome, Status
 from basu.output.report.document_parts import MATRIX_SCHEMA_VERSION, CellPart
 from basu.output.report.drive_row import part_of, row_of
 from basu.running.scenario_runs.chosen_cases import design_of, files_of
-from basu.running.scenario_runs.options import CASES, ScenarioOptions
+from basu.running.scenario_runs.options import CaseOptions, ScenarioOptions
 from basu.scenarios.characteristics import measured
 from basu.scenarios.sampling import Grid, Sweep
 from basu.scenarios.share_documents import not_played, results_from, shares_to_json
 from basu.scenarios.shares import crash_shares
 from basu.scenarios.tree_text import tree_of
 from basu.scenarios.verdict import judge
-from basu.settings.command_line import words_of
-from basu.settings.document import SCENARIO_RUN, config_document
+from basu.settings.document import SCENARIO_RUN, command_of, config_document
 from basu.settings.option import fields_of
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def case_part(
         "actors": [] if playing is None else playing.actors(),
         "things": [] if playing is None else [thing._asdict() for thing in playing.things],
         "scenarios_file": case.source,
-        "command": command(playable, options, typed_name(options, loaded)),
+        "command": command_of(SCENARIO_RUN, options_again(playable, options, typed_name(options, loaded))),
         "simulated_s": 0.0 if history is None else round(len(history.frames) * STEP_S, 3),
         "wall_s": round(wall_s, 3),
         "timeout_s": scenario.timeout_s,
@@ -99,23 +98,12 @@ def about(playable: Playable) -> dict[str, Any]:
     return {**playable.about(), "place": playable.case.place, "on_route": playable.case.on_route}
 
 
-def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[str]:
-    """Return the command line that plays this case alone again."""
-    return command_of(options_again(playable, options, agent))
-
-
-def command_of(options: ScenarioOptions) -> list[str]:
-    """Return the command line of ``options``: each that differs from its default, but none of the session."""
-    session = [field.name for field in fields_of(ScenarioOptions) if not field.option.repeats]
-    return ["basu", "scenario", "run", *words_of(options, but=session)]
-
-
 def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
     """Return the options that play one case of a run alone; its id holds sample and parameters.
 
     ``options.seed`` is the seed of this one drive.
     """
-    chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
+    chosen = {field.name: field.default for field in fields_of(CaseOptions)}
     found = {"what": (playable.case.name,), "files": files_of(options), "agents": (agent,), "repetitions": 1}
     return replace(options, **{**chosen, **found})
 
@@ -131,7 +119,7 @@ def run_config(options: ScenarioOptions, scoring: Scoring, agents: Sequence[Foun
     files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
     files += [*options.metric_files, *([Path(options.keys)] if options.keys else [])]
     there = [file for file in files if file.is_file()]
-    return config_document(SCENARIO_RUN, options, scoring, [*command_of(options), *words_of(scoring)], there)
+    return config_document(SCENARIO_RUN, options, scoring, there)
 
 
 def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:

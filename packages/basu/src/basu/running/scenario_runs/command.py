@@ -28,8 +28,9 @@ from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.batch import Batch, counts
 from basu.running.drive import DriveDone
 from basu.running.folder_lock import locked
+from basu.running.preparation import agent_of
 from basu.running.scenario_runs.case_documents import matrix_of, run_config
-from basu.running.scenario_runs.player import agents_of, case_player
+from basu.running.scenario_runs.player import case_player
 from basu.running.scenario_runs.suite import Suite
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    agents = agents_of(options)
+    agents = [agent_of(options, each) for each in options.agents]
     names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 from basu.errors import UserError
 from basu.options.drive import DriveOptions
-from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
-from basu.settings.option import Option, Settings
-
-CASES = "cases"
+from basu.settings.option import Settings, option
 
 
 def processors() -> int:
@@ -22,119 +18,83 @@ def processors() -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class CaseOptions(Settings):
-    """The cases to play, their samples and their agents."""
+    """The cases to play, and their samples."""
 
-    what: Annotated[
-        tuple[str, ...],
-        Option(
-            help="all, a group, a scenario, a case's id, or a FILE.xml with cases",
-            group=CASES,
-            positional=True,
-            metavar="WHAT",
-            is_file=True,
-        ),
-    ] = ("all",)
-    files: Annotated[
-        tuple[Path, ...],
-        Option(
-            help="classes (FILE.py) or cases (FILE.xml) of your own; each brings the other of its name",
-            group=CASES,
-            flag="--scenarios",
-            metavar="FILE",
-            is_file=True,
-        ),
-    ] = ()
-    where: Annotated[
-        tuple[tuple[str, str], ...],
-        Option(
-            help="only cases with this characteristic, such as lighting=dark; may be given several times",
-            group=CASES,
-            metavar="FIELD=VALUE",
-            style="pairs",
-        ),
-    ] = ()
-    sweep: Annotated[
-        int | None,
-        Option(help="play N samples of each case (Latin hypercube)", group=CASES, metavar="N", rival="design"),
-    ] = None
-    grid: Annotated[
-        int | None,
-        Option(help="play each case with K values of every number", group=CASES, metavar="K", rival="design"),
-    ] = None
-    vary: Annotated[
-        tuple[str, ...],
-        Option(help="the parameters to sample", group=CASES, metavar="NAME[,NAME]", style="commas", default_text="all"),
-    ] = ()
-    fixed: Annotated[
-        tuple[tuple[str, str], ...],
-        Option(
-            help="set a parameter; may be given several times",
-            group=CASES,
-            flag="--set",
-            metavar="NAME=VALUE",
-            style="pairs",
-        ),
-    ] = ()
-    ego: Annotated[
-        str | None,
-        Option(
-            help="the entity of an OpenSCENARIO file that the agent drives",
-            group=CASES,
-            metavar="NAME",
-            default_text="Ego or hero, else the first vehicle",
-        ),
-    ] = None
-    agents: Annotated[
-        tuple[str, ...],
-        Option(
-            help="a name (`basu list`), FILE.py, or FILE.py:Class; may be given several times",
-            group=AGENT,
-            flag="--agent",
-            metavar="AGENT",
-            default_text="basic",
-            is_file=True,
-        ),
-    ] = ("basic",)
+    GROUP = "cases"
+
+    what: tuple[str, ...] = option(
+        ("all",),
+        "all, a group, a scenario, a case's id, or a FILE.xml with cases",
+        positional=True,
+        metavar="WHAT",
+        is_file=True,
+    )
+    files: tuple[Path, ...] = option(
+        (),
+        "classes (FILE.py) or cases (FILE.xml) of your own; each brings the other of its name",
+        flag="--scenarios",
+        metavar="FILE",
+    )
+    where: tuple[tuple[str, str], ...] = option(
+        (),
+        "only cases with this characteristic, such as lighting=dark; may be given several times",
+        metavar="FIELD=VALUE",
+        style="pairs",
+    )
+    sweep: int | None = option(None, "play N samples of each case (Latin hypercube)", rival="design")
+    grid: int | None = option(None, "play each case with K values of every number", metavar="K", rival="design")
+    vary: tuple[str, ...] = option(
+        (), "the parameters to sample", metavar="NAME[,NAME]", style="commas", default_text="all"
+    )
+    fixed: tuple[tuple[str, str], ...] = option(
+        (), "set a parameter; may be given several times", flag="--set", metavar="NAME=VALUE", style="pairs"
+    )
+    ego: str | None = option(
+        None,
+        "the entity of an OpenSCENARIO file that the agent drives",
+        metavar="NAME",
+        default_text="Ego or hero, else the first vehicle",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScenarioOptions(DriveOptions, CaseOptions):
+class ChosenAgents(Settings):
+    """The agents of ``basu scenario run``."""
+
+    GROUP = "agent"
+
+    agents: tuple[str, ...] = option(
+        ("basic",),
+        "a name (`basu list`), FILE.py, or FILE.py:Class; may be given several times",
+        flag="--agent",
+        metavar="AGENT",
+        default_text="basic",
+        is_file=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScenarioOptions(DriveOptions, ChosenAgents, CaseOptions):
     """The options of one ``basu scenario run``: those of every drive, with the defaults of cases."""
 
-    seed: Annotated[
-        int,
-        Option(
-            help="seed of the samples; without --sweep, of everything random in the drives, and each further "
-            "repetition has the next",
-            group=CONDITIONS,
-            metavar="N",
-        ),
-    ] = 0
-    weather: Annotated[
-        str | None,
-        Option(help="one of CARLA's presets", group=CONDITIONS, metavar="NAME", default_text="as the case says"),
-    ] = None
-    vehicle: Annotated[
-        str | None,
-        Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the case says"),
-    ] = None
-    workers: Annotated[
-        int,
-        Option(
-            help="simulators that run at the same time; a window, keys, ROS topics and --host need one alone",
-            group=SIMULATOR,
-            metavar="N",
-            least=1,
-            default_text="one a processor",
-            repeats=False,
-        ),
-    ] = field(default_factory=processors)
-    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
-        Path("scenario-runs")
+    GROUP = "run folders"
+
+    seed: int = option(
+        0,
+        "seed of the samples; without --sweep, of everything random in the drives, and each further "
+        "repetition has the next",
     )
-    junit: Annotated[
-        Path | None, Option(help="write the JUnit XML there as well", group=FOLDERS, metavar="FILE", repeats=False)
-    ] = None
+    weather: str | None = option(None, "one of CARLA's presets", metavar="NAME", default_text="as the case says")
+    vehicle: str | None = option(None, "blueprint to drive", metavar="BLUEPRINT", default_text="as the case says")
+    workers: int = option(
+        processors(),
+        "simulators that run at the same time; a window, keys, ROS topics and --host need one alone",
+        least=1,
+        default_text="one a processor",
+        repeats=False,
+    )
+    output: Path = option(Path("scenario-runs"), "parent of the run folders", metavar="DIR", repeats=False)
+    junit: Path | None = option(None, "write the JUnit XML there as well", metavar="FILE", repeats=False)
 
     def check(self) -> None:
         """Check what concerns several options.

@@ -5,12 +5,11 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.agents.process.gate import closed_ports
-from basu.agents.process.remote_agent import find_agent
 from basu.episode import Towns
 from basu.jobs.job import After, JobOutcome, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
+from basu.running.preparation import agent_of
 from basu.running.scenario_runs.chosen_cases import files_of
 from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
 from basu.running.scenario_runs.one_case import CaseSession, play_case
@@ -48,26 +47,6 @@ def case_player(
     return PlayerSpec(f"{__name__}:open_cases", (options, scoring, output, given))
 
 
-def agents_of(options: ScenarioOptions) -> list[FoundAgent]:
-    """Return the agents of a run of scenarios, loaded, in the order in which they were typed.
-
-    Raises:
-        UserError: one cannot be had.
-    """
-    closed = closed_ports(options.host, options.port, is_open=options.open)
-    return [
-        find_agent(
-            agent,
-            in_process=options.in_process,
-            memory_gb=options.agent_memory_gb,
-            writes=options.agent_writes,
-            closed_ports=closed,
-            output=None if options.open else options.output,
-        )
-        for agent in options.agents
-    ]
-
-
 @contextlib.contextmanager
 def open_cases(
     options: ScenarioOptions, scoring: Scoring, output: Path, given: Mapping[str, LoadedAgent] | None
@@ -79,7 +58,7 @@ def open_cases(
         SimulatorError: there is no simulator to play in.
     """
     library = open_library(files_of(options))
-    agents: Mapping[str, FoundAgent] = given or dict(zip(options.agents, agents_of(options), strict=True))
+    agents: Mapping[str, FoundAgent] = given or {each: agent_of(options, each) for each in options.agents}
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
     with maps_of(library.cases) as folders, simulator_for(with_maps(options.simulator, folders)) as simulator:
         session = CaseSession(options, simulator, Towns(simulator), scoring)

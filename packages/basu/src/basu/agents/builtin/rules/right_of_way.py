@@ -15,10 +15,8 @@ import enum
 import math
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.manner import slowing_distance_m
-from basu.agents.builtin.driving.planner import FIRM
 from basu.agents.builtin.rules.gap_acceptance import START_S, crossing, waiting
-from basu.agents.builtin.rules.stopping_lines import BEFORE_LINE_M, hold_at, is_resting_at
+from basu.agents.builtin.rules.stopping_lines import BEFORE_LINE_M, hold_at, is_resting_at, is_too_late
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,7 +135,7 @@ class YieldSign:
         left_m = self.line_s_m - front_s_m
         if self.phase is YieldPhase.PASSED or left_m > LOOK_M:
             return None
-        if left_m < 0.0 or (self.phase is YieldPhase.APPROACHING and self._is_too_late(left_m, ego.speed_mps)):
+        if left_m < 0.0 or (self.phase is YieldPhase.APPROACHING and is_too_late(left_m, ego.speed_mps)):
             self.phase = YieldPhase.PASSED
             return None
         if crossing(self._zone, ego, self._heeded(others), self._within_s(ego, left_m)):
@@ -169,8 +167,3 @@ class YieldSign:
             self._arrived_at_s = ego.time_s
         waited_s = 0.0 if self._arrived_at_s is None else ego.time_s - self._arrived_at_s
         return self._rule.needed_s(inside_m, ego.speed_mps, waited_s)
-
-    @staticmethod
-    def _is_too_late(left_m: float, speed_mps: float) -> bool:
-        """Whether even firm braking would end beyond the line."""
-        return slowing_distance_m(speed_mps, 0.0, 0.0, FIRM) > left_m - BEFORE_LINE_M / 2

@@ -59,17 +59,17 @@ class TrafficLight:
             return None
         if shows is Light.YELLOW:
             # decided once, when it turns yellow: a stop that has begun goes on, and none begins later
-            if self._drives_through_yellow or self._is_too_late(left_m, speed_mps):
+            if self._drives_through_yellow or is_too_late(left_m, speed_mps):
                 self._drives_through_yellow = True
                 return None
-        elif self._drives_through_yellow and self._is_too_late(left_m, speed_mps):
+        elif self._drives_through_yellow and is_too_late(left_m, speed_mps):
             return None
         return hold_at(self.line_s_m, front_s_m, "traffic light")
 
-    @staticmethod
-    def _is_too_late(left_m: float, speed_mps: float) -> bool:
-        """Whether even firm braking would end beyond the line."""
-        return slowing_distance_m(speed_mps, 0.0, 0.0, FIRM) > left_m - BEFORE_LINE_M / 2
+
+def is_too_late(left_m: float, speed_mps: float) -> bool:
+    """Return whether even firm braking would end beyond the line."""
+    return slowing_distance_m(speed_mps, 0.0, 0.0, FIRM) > left_m - BEFORE_LINE_M / 2
 
 
 DWELL_S = 10.0

@@ -10,6 +10,7 @@ from basu.metrics.registry import built_in
 from basu.output.report import events
 from basu.output.report.console import why_not_comparable
 from basu.output.report.templates import DASH, e, render, words
+from basu.units import parted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,19 +19,6 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from basu.metrics.result import Result
-
-
-UNITS = {
-    "mps3": "m/s³",
-    "mps2": "m/s²",
-    "mps": "m/s",
-    "miles": "mi",
-    "km": "km",
-    "m": "m",
-    "s": "s",
-    "rad": "rad",
-    "deg": "°",
-}
 
 
 class NamedFigure(NamedTuple):
@@ -44,8 +32,8 @@ def rows(document: Mapping[str, Any], before: str = "") -> list[NamedFigure]:
     """Return every figure of a document, those within its parts under the parts' names; lists by their number."""
     found = []
     for key, value in document.items():
-        name, unit = _unit(key)
-        name = f"{before}{name}"
+        stem, unit = parted(key)
+        name = f"{before}{words(stem)}"
         if isinstance(value, dict):
             found += rows(value, f"{name}: ") if value else [NamedFigure(name, "none")]
         else:
@@ -57,14 +45,6 @@ def table(found: list[NamedFigure], caption: str | None = None) -> Element:
     """Rows as a table."""
     body = e("tbody", *(e("tr", e("th", row.name, scope="row"), e("td", row.text)) for row in found))
     return e("table", None if caption is None else e("caption", caption), body, class_="figures")
-
-
-def _unit(key: str) -> tuple[str, str]:
-    """Return the name and the unit that a key is made of."""
-    stem, _, last = key.rpartition("_")
-    if stem and last in UNITS:
-        return words(stem), UNITS[last]
-    return words(key), ""
 
 
 def _text(value: object, unit: str) -> str:
