@@ -1,4 +1,4 @@
-"""Options of the page, the viewer and recorded keys."""
+"""Options of the page and of recorded keys."""
 
 from __future__ import annotations
 
@@ -22,12 +22,9 @@ class WindowOptions(Settings):
         "hud_camera": _PAGE,
         "hud_size": "the page has the size of the browser's window; --watch opens it",
         "hud_screenshot": "press K in the page of --watch, or make a film of the run with `basu watch RUN --film FILE`",
+        "viewer": f"{_PAGE}; --rosbag writes the sensors into a file that Rerun opens",
     }
 
-    viewer: Annotated[
-        bool,
-        Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
-    ] = False
     watch: Annotated[
         bool,
         Option(

@@ -1,4 +1,4 @@
-"""Outputs: what shows or writes a drive while it lasts. Plugins bring them: the window, Rerun's viewer, ROS."""
+"""Outputs: what shows or writes a drive while it lasts. Plugins bring them: the window, ROS."""
 
 from __future__ import annotations
 
@@ -44,7 +44,6 @@ def _wanted(options: DriveOptions, *, has_person: bool) -> dict[str, str]:
     found = {"window": watched or next((flag for flag, value in keys.items() if value is not None), None)}
     if has_person:
         found["window"] = "a person at the wheel"
-    found["viewer"] = "--viewer" if options.viewer else None
     found["ros"] = next((flag for flag, is_set in ros.items() if is_set), None)
     return {name: flag for name, flag in found.items() if flag is not None}
 
@@ -75,6 +74,6 @@ def check_outputs(options: DriveOptions) -> None:
 
 
 def output_managers(options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
-    """Return the managers of all outputs, in their order: window, viewer, ROS, then those of other projects."""
+    """Return the managers of all outputs, in their order: window, ROS, then those of other projects."""
     outputs = _outputs(options, has_person=drive.live.agents.person is not None)
     return [manager for output in outputs for manager in output.managers(options, drive)]
