@@ -22,8 +22,8 @@ from basu.output.report.comparison import (
     text,
 )
 from basu.output.report.comparison_picture import draw
-from basu.output.report.documents import read_run
-from basu.output.report.html.page import REPORT_FILE, legend, page
+from basu.output.report.documents import REPORT_FILE, read_run
+from basu.output.report.html.page import legend, page
 from basu.output.report.plots.chart import Curve, chart
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
@@ -120,7 +120,7 @@ def _pictures(run: RunRecord, shared: Bounds | None, axes: _Axes) -> list[Elemen
         for number, found in enumerate(run.result.infractions, start=1)
     ]
     return [
-        plain_map(run.history, run.streets, bounds, places),
+        plain_map(run.history, run.streets.lines, bounds, places),
         chart(
             felt.t_s,
             curves,
