@@ -72,13 +72,21 @@
   slider.addEventListener("input", () => show(Number(slider.value)));
   slider.closest(".moment").hidden = false;
 
+  // `basu index` tells its reports the way back to it
+  const index = new URLSearchParams(location.search).get("index");
+  if (index && /^(\.\.\/)*index\.html$/.test(index)) {
+    document.getElementById("all-runs").href = index;
+    document.getElementById("all-runs").hidden = false;
+  }
+
   function openNamed() {
-    const found = document.getElementById(location.hash.slice(1));
+    const named = document.getElementById(location.hash.slice(1));
+    const found = named?.tagName === "SECTION" ? named.querySelector(":scope > details") : named;
     if (!found || found.tagName !== "DETAILS") return;
     for (let each = found; each; each = each.parentElement.closest("details")) each.open = true;
     found.scrollIntoView({ block: "nearest" });
     found.querySelector("summary").focus({ preventScroll: true });
-    showTime(Number(found.dataset.t));
+    if (found.dataset.t) showTime(Number(found.dataset.t));
   }
   addEventListener("hashchange", openNamed);
   for (const link of document.querySelectorAll('a[href^="#"]')) {
