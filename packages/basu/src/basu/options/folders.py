@@ -77,6 +77,14 @@ class SeriesOptions(Settings):
             repeats=False,
         ),
     ] = field(default_factory=lambda: dict.fromkeys(SCORES, 0.0))
+    details: Annotated[
+        bool,
+        Option(
+            help="print the figures of all metrics and the editions of CARLA's leaderboard as well",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     series: Annotated[
         str | None,
         Option(
