@@ -12,6 +12,8 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
 from basu.output.report.comparison import (
+    DIFFERENT_CONDITIONS,
+    different_conditions,
     heads,
     histories,
     reasons,
@@ -52,7 +54,9 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
     body = render(
         "templates/comparison.j2",
         agents=[row.agent for row in compared],
-        remarks=[*reasons(runs), *remarks(runs)],
+        different=DIFFERENT_CONDITIONS,
+        conditions=different_conditions(runs),
+        remarks=[*remarks(runs, conditions=False), *reasons(runs)],
         tables=[
             _scores(group, reports, beside, titled(track) if len(groups) > 1 else "") for track, group in groups.items()
         ],
@@ -161,4 +165,4 @@ def compared(folders: Sequence[Path]) -> str:
 
 
 def _table(runs: Sequence[RunRecord]) -> str:
-    return "\n".join([text(rows(runs)), *reasons(runs), *remarks(runs)])
+    return "\n".join([text(rows(runs)), *remarks(runs), *reasons(runs)])
