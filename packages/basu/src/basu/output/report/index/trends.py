@@ -49,7 +49,7 @@ def trends(runs: Sequence[IndexedRun]) -> list[Trend]:
     """Return a trend for each agent, subject, track and set of conditions, in the order of their first runs.
 
     A run that the agent did not complete counts as 0. A run that simulator, set-up or `--stop-after` ended is left out,
-    and so is a run whose score is not comparable for another reason (no gate, the agent's own route).
+    and so is a run that had no gate or drove a route of the agent's own.
     """
     kinds: dict[tuple[str, ...], list[IndexedRun]] = {}
     for run in sorted(runs, key=lambda each: each.started):
