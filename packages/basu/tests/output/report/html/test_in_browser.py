@@ -122,3 +122,20 @@ def test_the_replay_of_a_moment_is_a_command_in_a_file_and_a_link_at_the_window(
     assert replay.locator("a").is_visible()
     assert not replay.locator("code").is_visible()
     page.close()
+
+
+@pytest.mark.parametrize(
+    ("index", "is_shown"),
+    [("../index.html", True), ("../../index.html", True), ("javascript:alert(1)", False), ("//a.b/index.html", False)],
+)
+def test_a_report_that_the_index_opened_links_back_to_it_and_nowhere_else(
+    context: BrowserContext,
+    file: Path,
+    index: str,
+    is_shown: bool,  # noqa: FBT001 - a case
+) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}?index={index}#configuration")
+    assert page.locator("#all-runs").is_visible() is is_shown
+    assert page.locator("#all-runs").get_attribute("href") == (index if is_shown else None)
+    assert page.locator("#configuration pre").is_visible(), "a link to the settings opens them"
