@@ -22,8 +22,6 @@ from linden.compiled import COMPILER_IS_OFF, TARGET
 
 ROOT = Path(__file__).parents[1]
 OPTIONAL = (
-    "rerun",
-    "rerun_bindings",
     "gymnasium",
     "pyproj",
     "IPython",

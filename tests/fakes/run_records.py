@@ -6,13 +6,13 @@ from typing import Any
 from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, RunRecord, write_json
-from basu.output.report.streets import Line, write_streets
+from basu.output.report.streets import Streets, write_streets
 from basu.records.history import History
 from basu.records.history.files import write_history
 from fakes.drives import at, driven, hit, stop_sign, straight_route
 from fakes.results import META
 
-STREETS: list[Line] = [[(-60.0, 0.0), (260.0, 0.0)], [(100.0, -80.0), (100.0, 80.0)]]
+STREETS = Streets([[(-60.0, 0.0), (260.0, 0.0)], [(100.0, -80.0), (100.0, 80.0)]], ["Long Street", ""])
 
 
 def crashing() -> History:

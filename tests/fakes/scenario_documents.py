@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from basu.output.report.streets import Line
+from basu.output.report.streets import Line, Streets
 from basu.records.history import FRAME, Collision, Facts, History, Recorder
 from basu.records.history.model import NO_LIGHT
 from basu.scenarios.share_documents import results_from, shares_to_json
@@ -22,6 +22,7 @@ STREETS: list[Line] = [
     [(62.0, -80.0), (62.0, 80.0)],
     [(65.5, -80.0), (65.5, 80.0)],
 ]
+NAMED = Streets(STREETS, ["Long Street", "Long Street", "", ""])
 GROUPS = {
     "control loss": ("ControlLoss",),
     "pedestrian": ("PedestrianCrossing", "OccludedChild"),

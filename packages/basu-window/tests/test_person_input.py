@@ -76,10 +76,11 @@ def test_a_run_that_was_never_set_up_leaves_no_session(tmp_path: Path) -> None:
         (["--hud", "map"], "--hud is no option any more: --watch shows"),
         (["--hud-size", "800x600"], "--hud-size is no option any more: the page has the size of the browser's window"),
         (["--hud-screenshot", "a.png"], "--hud-screenshot is no option any more: press K in the page of --watch"),
+        (["--viewer"], "--viewer is no option any more: --watch shows the drive"),
     ],
 )
 @pytest.mark.parametrize("command", [["run", "basic"], ["scenario", "run", "all"]])
-def test_options_of_the_former_window_name_the_page(
+def test_options_of_former_windows_name_the_page(
     capsys: pytest.CaptureFixture[str], command: list[str], flag: list[str], words: str
 ) -> None:
     with pytest.raises(SystemExit):

@@ -84,7 +84,6 @@ def test_a_command_without_its_plugin_names_what_to_install(command: str, capsys
     ("arguments", "distribution"),
     [
         (["run", "basic", "--watch"], "basu-window"),
-        (["run", "basic", "--viewer"], "basu-window"),
         (["run", "basic", "--keys", "data/human_session.json"], "basu-window"),
         (["run", "human"], "basu-window"),
         (["run", "basic", "--rosbag"], "basu-ros"),

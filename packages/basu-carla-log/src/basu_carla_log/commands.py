@@ -9,7 +9,12 @@ from basu.cli.driving import SIMULATOR
 from basu.cli.later import later
 from basu.options.run import RunOptions
 from basu.plugins import Command
-from basu.settings.command_line import add_options
+from basu.settings.command_line import Parser, add_options
+
+_PAGE = (
+    "`basu watch RUN` shows a run in a page of the browser; "
+    "a recorder file plays on `linden serve --window`, with --host"
+)
 
 
 def add_metrics(metrics: argparse.ArgumentParser) -> None:
@@ -40,21 +45,13 @@ def add_metrics(metrics: argparse.ArgumentParser) -> None:
 def add_replay(replay: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu replay``."""
     replay.description = (
-        "Play a run again: on a simulator, where any client can watch it, or with --viewer in Rerun's, without one."
+        "Play a run's recorder file again on a simulator, where any client can watch it. `basu watch RUN` needs none."
     )
+    if isinstance(replay, Parser):
+        replay.gone |= dict.fromkeys(("--viewer", "--save", "--map"), _PAGE)
     replay.add_argument(
         "recording", type=Path, metavar="RUN", help="a run's folder, or a recorder file of CARLA's (.log)"
     )
-    replay.add_argument(
-        "--viewer", action="store_true", help="in Rerun's viewer, from the record alone; a run needs no log for that"
-    )
-    replay.add_argument(
-        "--save",
-        type=Path,
-        metavar="FILE.rrd",
-        help="where --viewer keeps it (default: replay.rrd in the run's folder)",
-    )
-    replay.add_argument("--map", type=Path, metavar="FILE.xodr", help="to draw with --viewer (default: the run's)")
     add_options(replay, RunOptions, only=SIMULATOR)
     replay.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="times real time, 0 for unbraked (default: %(default)s)"

@@ -1,1 +1,1 @@
-"""A window on a run: the head-up display, a person at the wheel, and Rerun's viewer."""
+"""A window on a run: the page of the browser, and a person at the wheel."""

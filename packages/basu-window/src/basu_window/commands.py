@@ -17,6 +17,7 @@ def add_watch(watch: argparse.ArgumentParser) -> None:
     )
     watch.add_argument("--map", type=Path, metavar="FILE.xodr", help="the map of the runs (default: the first run's)")
     watch.add_argument("--port", type=int, default=0, metavar="N", help="port of the page (default: any free one)")
+    watch.add_argument("--at", type=float, metavar="S", help="simulated time at which the page begins (default: 0)")
     watch.add_argument(
         "--film",
         type=Path,

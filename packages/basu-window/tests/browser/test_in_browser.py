@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
+from basu.output.report.html.page import write_report
 from basu.records.history.files import read_history
 from basu_fixtures import SHORT_ROUTE
 from browsers import running_browser
@@ -49,6 +50,7 @@ def started(*words: str | Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 
 def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: Path) -> None:
     folder = written(tmp_path / "a-run", record(crashing()))
+    write_report(folder, record(crashing()))
     (folder / "config.json").unlink()  # its fake has no scoring, and the default is meant
     (tmp_path / "street.xodr").write_text(SIGNS_AND_LIGHTS)
     with started("watch", folder, "--map", tmp_path / "street.xodr") as (_, address):
@@ -63,6 +65,11 @@ def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: 
         page.wait_for_function(f"page.replay.clock > {before}", timeout=WAIT_MS)
         page.keyboard.press("Space")
         page.wait_for_function(f"page.replay.clock > {before} + 1", timeout=WAIT_MS)
+        page.click("#reports a")
+        page.click('#map a[href="#infraction-3"]')
+        page.click("#infraction-3 .replay a")
+        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1", timeout=WAIT_MS)
+        assert page.evaluate("page.replay.clock") == pytest.approx(4.7)
         assert page.errors == []
         page.close()
 

@@ -63,7 +63,7 @@ def test_marks_and_panels_say_what_the_judgement_says() -> None:
 
 
 def arguments(*runs: Path) -> argparse.Namespace:
-    return argparse.Namespace(runs=list(runs), map=None, port=0, film=None)
+    return argparse.Namespace(runs=list(runs), map=None, port=0, film=None, at=None)
 
 
 def test_a_cut_record_gets_a_sentence(tmp_path: Path) -> None:
@@ -87,3 +87,12 @@ def test_a_run_on_a_map_that_is_not_there_names_the_option(tmp_path: Path) -> No
         map_text(tmp_path, None, "Nowhere")
     with pytest.raises(UserError, match="cannot be read"):
         map_text(tmp_path, tmp_path / "none.xodr", "Nowhere")
+
+
+def test_a_moment_outside_of_the_run_gets_a_sentence(tmp_path: Path) -> None:
+    folder = written(tmp_path / "a", record(crashing()))
+    given = arguments(folder)
+    for at in (-1.0, 1000.0, float("nan")):
+        given.at = at
+        with pytest.raises(UserError, match=r"the run lasts from 0 to 26\.6 s of simulated time"):
+            run(given)

@@ -175,7 +175,7 @@ def run(
             assert done.folder is not None, "a drive in this process that cannot begin raises its error"
             result = RunResult(done.folder)
             if progress:
-                sys.stdout.write(f"{table(result.result)}\n")
+                sys.stdout.write(f"{table(result.result, details=False)}\n")
             if result.outcome.status is Status.SIMULATOR_FAILED and simulator is None:
                 _shared.close()
             if isinstance(done.bug, Exception):

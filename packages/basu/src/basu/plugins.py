@@ -37,13 +37,12 @@ DISTRIBUTIONS = {
     AGENTS: {**dict.fromkeys(("autoware", "autoware-ai", "ros", "ros1"), "basu-ros"), "egodriver": "basu-alpasim"},
     AGENT_FILES: {"leaderboard": "basu-leaderboard"},
     SCENARIO_FILES: {"xosc": "basu-openscenario"},
-    OUTPUTS: {"window": "basu-window", "viewer": "basu-window", "ros": "basu-ros"},
+    OUTPUTS: {"window": "basu-window", "ros": "basu-ros"},
     PARTS: {
         "person": "basu-window",
         "scenario_export": "basu-openscenario",
         "search": "basu-search",
         "sumo": "basu-sumo",
-        "viewer_replay": "basu-window",
     },
 }
 """The plugins of this project: group -> name of the entry point -> distribution."""

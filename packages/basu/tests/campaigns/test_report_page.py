@@ -17,7 +17,7 @@ from basu.output.report.documents import RESULT_FILE, write_json
 from basu.output.report.streets import write_streets
 from basu.records.history.files import write_history
 from browsers import running_browser
-from fakes.scenario_documents import STREETS, crossing, failed
+from fakes.scenario_documents import NAMED, crossing, failed
 
 WIDE = """() => [...document.querySelectorAll("body *")].filter(each => {
     if (each.ownerSVGElement) return false;  // the picture cuts off what is inside it
@@ -49,7 +49,7 @@ def page_file(
     for each in kept[1:]:
         at = folder_of(folder, each)
         write_history(at, crossing(brakes=False))
-        write_streets(at, STREETS)
+        write_streets(at, NAMED)
         write_json(at / RESULT_FILE, {**failed(), "schema_version": 2})
     told = folder_of(folder, kept[1]) / "drive.json"
     document = read_json(told, "the document")

@@ -106,7 +106,7 @@ def test_a_run_in_which_nothing_was_driven_has_no_score() -> None:
 
 def test_the_table_tells_scores_infractions_and_signs() -> None:
     text = table(result())
-    assert text.startswith("Completed: arrived")
+    assert "ended             Completed: arrived" in text
     assert "driving score        0.6" in text
     assert "collision_static" in text
     assert "stop signs        0 of 1 obeyed; slowest speed before any line at most " in text

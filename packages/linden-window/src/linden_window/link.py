@@ -77,7 +77,11 @@ class PageLink:
 
     def note(self, facts: dict[str, Any]) -> None:
         """Send facts; they wait if the socket is full."""
-        self._send(NOTE, json.dumps(_finite(facts), separators=(",", ":"), allow_nan=False).encode())
+        try:
+            text = json.dumps(facts, separators=(",", ":"), allow_nan=False)
+        except ValueError:
+            text = json.dumps(_finite(facts), separators=(",", ":"), allow_nan=False)
+        self._send(NOTE, text.encode())
 
     def pane(self, name: str, packed: bytes) -> None:
         """Send a sensor's measurement (:mod:`linden_window.panes`); it waits if the socket is full."""

@@ -50,6 +50,9 @@ _POLICY = (
     "script-src 'self' '{hash}'; connect-src 'self' ws://{host}; object-src 'none'; base-uri 'none'"
 )
 
+_REPORT_POLICY = "sandbox allow-scripts; default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+"""Of reports in run folders: any network is forbidden, and their scripts cannot reach the window's pages."""
+
 Found = bytes | None
 Resources = Callable[[str, dict[str, str]], Found]
 """Returns the gzip-compressed content of a path below the token (``scene/1/tile-3.glb``) with its query, or None."""
@@ -145,7 +148,7 @@ class PageServer:
         headers["Referrer-Policy"] = "no-referrer"
         if suffix == ".html":
             policy = _POLICY.format(hash=_script_hash(), host=request.headers["Host"])
-            headers["Content-Security-Policy"] = policy
+            headers["Content-Security-Policy"] = _REPORT_POLICY if path.startswith("record/") else policy
         if "gzip" in request.headers.get("Accept-Encoding", ""):
             headers["Content-Encoding"] = "gzip"
         else:

@@ -44,6 +44,7 @@ def turns(degrees: NDArray[np.floating[Any]]) -> NDArray[np.int16]:
     return packed
 
 
-def message(frame: int, t_s: float, rows: NDArray[Any], *, jumps: bool = False) -> bytes:
-    """Return the bytes of one frame."""
-    return HEADER.pack(MAGIC, frame, t_s, len(rows), JUMPS if jumps else 0) + rows.tobytes()
+def message(frame: int, t_s: float, *rows: NDArray[Any], jumps: bool = False) -> bytes:
+    """Return the bytes of one frame; ``rows`` are arrays of rows, one behind the other."""
+    header = HEADER.pack(MAGIC, frame, t_s, sum(map(len, rows)), JUMPS if jumps else 0)
+    return b"".join([header, *(part.tobytes() for part in rows)])

@@ -27,7 +27,7 @@ SWITCHES = (
     "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 )  # fmt: skip
-_SCENE_MS = 180_000.0
+_SCENE_MS = 600_000.0  # the processor draws, and others may use it
 _IS_READY = """globalThis.page?.replay.isOn && page.poses.length > 0
     && (page.isFlat || (page.world.loaded > 0 && page.world.waiting.length + page.world.loading === 0))"""
 _SEEK = """(t) => new Promise((done) => { page.replay.seek(t);

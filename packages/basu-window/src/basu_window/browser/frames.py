@@ -41,14 +41,17 @@ def ego_rows(frames: NDArray[Any], run: int = 0) -> NDArray[Any]:
     """Return rows of the page (T,) from frames of the record (T,)."""
     out = np.zeros(len(frames), POSE)
     out["id"], out["ghost"] = EGO_ID + run * RUN_IDS, run
-    out["place"] = np.column_stack([frames[f"{axis}_m"] for axis in "xyz"])
-    angles = np.column_stack([frames[f"{axis}_rad"] for axis in ("pitch", "yaw", "roll")])
+    _place(out, frames)
+    angles = np.empty((len(frames), 3))
+    for column, axis in enumerate(("pitch_rad", "yaw_rad", "roll_rad")):
+        angles[:, column] = frames[axis]
     out["rotation"] = poses.turns(np.degrees(angles))
-    speed = np.sqrt(sum(frames[f"velocity_{axis}_mps"] ** 2 for axis in "xyz"))
+    speed = np.sqrt(frames["velocity_x_mps"] ** 2 + frames["velocity_y_mps"] ** 2 + frames["velocity_z_mps"] ** 2)
     out["speed"] = np.minimum(speed, 327.0) * 100.0
     out["steer"] = (frames["applied_steer"] * 70.0).clip(-127, 127)  # a full wheel turns some 40 degrees
     out["throttle"], out["brake"] = frames["applied_throttle"] * 255.0, frames["applied_brake"] * 255.0
-    out["limit"] = np.nan_to_num(frames["speed_limit_mps"] * MPS_TO_KMH).clip(0, 255)
+    limit = frames["speed_limit_mps"] * MPS_TO_KMH
+    out["limit"] = np.where(limit > 0.0, np.minimum(limit, 255.0), 0.0)  # 0 for none, which is nan in the record
     out["lights"] = np.where(frames["applied_brake"] > 0.02, 0x8, 0)
     reverses = frames["applied_reverse"].astype(bool)
     out["state"] = reverses * np.uint8(poses.REVERSES) + frames["manual"].astype(np.uint8) * np.uint8(poses.BY_HAND)
@@ -59,12 +62,18 @@ def other_rows(others: NDArray[Any], run: int = 0) -> NDArray[Any]:
     """Return rows of the page (M,) from the record's other actors (M,)."""
     out = np.zeros(len(others), POSE)
     out["id"], out["ghost"] = others["id"] + FIRST_OTHER + run * RUN_IDS, run
-    out["place"] = np.column_stack([others[f"{axis}_m"] for axis in "xyz"])
+    _place(out, others)
     angles = np.zeros((len(others), 3))
     angles[:, 1] = np.degrees(others["yaw_rad"])
     out["rotation"] = poses.turns(angles)
     out["speed"] = np.minimum(np.hypot(others["velocity_x_mps"], others["velocity_y_mps"]), 327.0) * 100.0
     return out
+
+
+def _place(out: NDArray[Any], rows: NDArray[Any]) -> None:
+    """Write the places of the record's rows."""
+    for column, axis in enumerate(("x_m", "y_m", "z_m")):
+        out["place"][:, column] = rows[axis]
 
 
 def as_others(rows: list[tuple[float, ...]]) -> NDArray[Any]:
@@ -207,7 +216,7 @@ def record_frames(histories: list[History]) -> bytes:
         for run, history in enumerate(histories):
             at = min(round(tick * step_s / history.facts.step_s), len(history.frames) - 1)
             rows += [egos[run][at : at + 1], others[run][starts[run][at] : starts[run][at + 1]]]
-        parts.append(poses.message(tick, float(longest.frames["t_s"][tick]), np.concatenate(rows)))
+        parts.append(poses.message(tick, float(longest.frames["t_s"][tick]), *rows))
     return gzip.compress(b"".join(parts), 6, mtime=0)
 
 

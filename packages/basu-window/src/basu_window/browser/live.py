@@ -47,6 +47,7 @@ WEATHER_EVERY_S = 5.0
 WAITS_FOR_PAGE_S = 300.0
 """How long a drive by hand waits for a page: a person copies an address within a minute."""
 _POLL_S = 0.05
+_COLUMNS = frozenset(FRAME.names or ())
 _WEATHER = (
     "cloudiness", "precipitation", "precipitation_deposits", "wetness", "sun_azimuth_angle", "sun_altitude_angle",
     "fog_density", "fog_distance",
@@ -90,7 +91,7 @@ class WatchManager(BaseManager):
         except LindenError as error:
             raise UserError(str(error)) from error
         self._say(f"window            {link.address}")
-        self._neighbours = Neighbours(run.world, run.vehicle.id)
+        self._neighbours = run.neighbours or Neighbours(run.world, run.vehicle.id)
         self._vehicle = vehicle_of(run.vehicle)
         name = run.carla_map.name.rpartition("/")[2]
         link.note({"type": "map", "name": name, "text": run.carla_map.to_opendrive()})
@@ -165,8 +166,8 @@ class WatchManager(BaseManager):
         rows = self._neighbours.near(frame)
         if not self._known.issuperset(self._neighbours.met):
             self._tell_actors()
-        both = np.concatenate([ego_rows(self._recorded(frame)), other_rows(as_others(rows))])
-        link.frame(poses.message(frame.tick, frame.tick * self._run.step_s, both))
+        own, others = ego_rows(self._recorded(frame)), other_rows(as_others(rows))
+        link.frame(poses.message(frame.tick, frame.tick * self._run.step_s, own, others))
         self._has_shown = True
         is_last = self._live.routes.outcome is not None
         if now_s >= self._panel_next_s or is_last:
@@ -232,9 +233,9 @@ class WatchManager(BaseManager):
     def _recorded(self, frame: Frame) -> np.ndarray[Any, Any]:
         """Return the frame in the columns of the record that the page shows."""
         row = np.zeros(1, FRAME)
-        for name in frame.ego._fields:
-            if name in (FRAME.names or ()):
-                row[name] = getattr(frame.ego, name)
+        for name, value in frame.ego._asdict().items():
+            if name in _COLUMNS:
+                row[name] = value
         control = self._live.agents.control
         row["applied_throttle"], row["applied_steer"], row["applied_brake"] = (
             control.throttle, control.steer, control.brake,

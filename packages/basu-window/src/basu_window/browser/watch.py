@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import select
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from basu.errors import UserError
 from basu.metrics.incremental import SoFar
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring, scoring_of_run
-from basu.output.report.documents import CONFIG_FILE
+from basu.output.report.documents import CONFIG_FILE, REPORT_FILE
 from basu.records.history.files import lacks, read_history
 from basu.records.recording_files import MAP_FILE
 from basu.settings.resolve import resolve
@@ -46,12 +47,17 @@ def run(arguments: argparse.Namespace) -> int:
     folders: list[Path] = arguments.runs
     if arguments.film is not None:
         check_film(arguments.film)
+    if arguments.at is not None and arguments.film is not None:
+        raise UserError("--at is a moment of the page; name the first moment of a film with --film-from")
     if len(folders) > MOST_RUNS:
         raise UserError(f"a page shows at most {MOST_RUNS} runs at once; name fewer than {len(folders)}")
     histories = [read_history(folder) for folder in folders]
     towns = sorted({history.facts.route.town for history in histories})
     if len(towns) > 1:
         raise UserError(f"the runs are of different towns ({', '.join(towns)}); name runs of one town")
+    end_s = float(max(history.frames["t_s"][-1] for history in histories))
+    if arguments.at is not None and not 0.0 <= arguments.at <= end_s:
+        raise UserError(f"--at is {arguments.at:g}; the run lasts from 0 to {end_s:.1f} s of simulated time")
     text = map_text(folders[0], arguments.map, towns[0])
     try:
         link = PageLink.start(port=arguments.port)
@@ -60,12 +66,12 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         _send(link, folders, histories, text)
         if arguments.film is not None:
-            end_s = float(max(history.frames["t_s"][-1] for history in histories))
             until_s = end_s if arguments.film_to is None else min(end_s, arguments.film_to)
             write_film(link.address, arguments.film, arguments.film_from, until_s)
             print(f"film              {arguments.film}")  # noqa: T201 - what a command says to its user
             return 0
-        print(f"window            {link.address}", flush=True)  # noqa: T201 - what a command says to its user
+        moment = "" if arguments.at is None else f"?t={arguments.at:g}"
+        print(f"window            {link.address}{moment}", flush=True)  # noqa: T201 - what a command says to its user
         print("window            Ctrl-C ends it", flush=True)  # noqa: T201 - what a command says to its user
         while link.is_open:
             select.select([link], [], [], 1.0)
@@ -117,7 +123,19 @@ def _send(link: PageLink, folders: list[Path], histories: list[History], text: s
     facts = {"panels": panels_of(first, scorings[0], title), "marks": marks, "notice": " ".join(notices)}
     link.blob("frames.bin", record_frames(histories))
     link.blob("facts.json", packed(facts))
-    link.note({"type": "record", "frames": "record/frames.bin", "facts": "record/facts.json"})
+    links = {"frames": "record/frames.bin", "facts": "record/facts.json", "reports": _reports(link, folders)}
+    link.note({"type": "record", **links})
+
+
+def _reports(link: PageLink, folders: list[Path]) -> list[dict[str, str]]:
+    """Send the reports of the runs that have one, and return their names and paths for the page."""
+    found = []
+    for number, folder in enumerate(folders, 1):
+        if (folder / REPORT_FILE).is_file():
+            link.blob(f"report-{number}.html", gzip.compress((folder / REPORT_FILE).read_bytes(), 6, mtime=0))
+            name = f"report of run {number}" if len(folders) > 1 else "report"
+            found.append({"name": name, "path": f"record/report-{number}.html"})
+    return found
 
 
 def panels_of(history: History, scoring: Scoring, title: str) -> list[dict[str, Any]]:

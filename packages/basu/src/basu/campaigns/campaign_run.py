@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-from tqdm import tqdm
 
 from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE
 from basu.campaigns.columns import columns_of
@@ -18,6 +15,7 @@ from basu.campaigns.search_part import search_plugin
 from basu.jobs.job import Job
 from basu.metrics.registry import user_metrics
 from basu.outcome import Fault
+from basu.output.progress import drives_bar
 from basu.output.report.documents import write_json
 from basu.running.batch import Batch
 
@@ -75,7 +73,7 @@ class CampaignRun(Batch):
         """
         interrupted = False
         self._take_up()
-        bar = tqdm(total=self.limit, initial=self.table.number, unit="drive", disable=None, file=sys.stderr)
+        bar = drives_bar(self.limit, " drives", initial=self.table.number)
         try:
             with bar:
                 if not self._looks.is_answered():

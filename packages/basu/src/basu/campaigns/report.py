@@ -266,10 +266,10 @@ def _picture(at: Path, kind: str) -> dict[str, Element | str | None]:
 def _case_picture(at: Path) -> Element | None:
     """A case from above; None where nothing was driven."""
     case = read_case(at)
-    return None if case.history is None else case_drawing(case.case, case.history, case.streets)
+    return None if case.history is None else case_drawing(case.case, case.history, case.streets.lines)
 
 
 def _route_picture(at: Path) -> Element | None:
     """A drive on a route from above; None where nothing was driven."""
     run = read_run(at)
-    return None if run.history is None else plain_map(run.history, run.streets, bounds_of(run.history), [])
+    return None if run.history is None else plain_map(run.history, run.streets.lines, bounds_of(run.history), [])

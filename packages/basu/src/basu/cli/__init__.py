@@ -37,6 +37,7 @@ COMMANDS = {
     "score": OwnCommand("driving", "score a run again, from its folder alone"),
     "report": OwnCommand("results", "write report.html of a run again, from its folder alone"),
     "compare": OwnCommand("results", "put runs side by side"),
+    "index": OwnCommand("results", "put all results of a folder on one page"),
     "experiment": OwnCommand("driving", "drive the thesis's test runs again"),
     "list": OwnCommand("results", "show the agents and routes that come with BASU"),
 }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from basu.output.report.documents import read_run
-from basu.output.report.html.page import REPORT_FILE, write_report
+from basu.output.report.documents import REPORT_FILE, read_run
+from basu.output.report.html.page import write_report
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""Arguments of ``basu report``, ``compare`` and ``list``, which need no simulator."""
+"""Arguments of ``basu report``, ``compare``, ``index`` and ``list``, which need no simulator."""
 
 from __future__ import annotations
 
@@ -31,6 +31,18 @@ def add_compare(compare: argparse.ArgumentParser) -> None:
         help="write compare.html and compare.png there (default: write no files)",
     )
     compare.set_defaults(command=later("basu.cli.compare:run"))
+
+
+def add_index(index: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu index``."""
+    index.description = (
+        "Write index.html: all runs, series, scenario runs, campaigns and comparisons below a folder on one page, with "
+        "the trend between versions of each agent."
+    )
+    index.add_argument(
+        "folder", nargs="?", type=Path, default=Path("runs"), metavar="FOLDER", help="folder of results (default: runs)"
+    )
+    index.set_defaults(command=later("basu.cli.index:run"))
 
 
 def add_list(listing: argparse.ArgumentParser) -> None:

@@ -17,12 +17,9 @@ from basu.simulator import reason
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from basu.managers.base_manager import Run
     from basu.routing import Route
-    from basu.routing.lane_graph import LaneGraph
+    from basu.routing.lane_graph import LaneGraph, Street
     from basu.simulator import Simulator
 
 DROP_M = 0.3  # above the road, so that no wheel begins inside of it
@@ -47,7 +44,7 @@ class Town(NamedTuple):
 
     carla_map: carla.Map
     lanes: LaneGraph
-    streets_m: list[NDArray[np.float64]]  # the lanes' centre lines, (K, 2) each
+    streets: list[Street]  # the lanes' centre lines
 
 
 class Towns:

@@ -46,7 +46,7 @@ class SensorsManager(BaseManager):
             late: gives more sensors once the agent is set up.
             listener: receives the measurements for the agent, maybe in its own process.
             by_agent: whether a set that cannot be served is the agent's failure, and not the set-up's.
-            is_watched: whether a window or a viewer shows the measurements, so that they are received here as well.
+            is_watched: whether a page, a bag or a topic shows the measurements, so that they are received here as well.
         """
         self._specs, self._source, self._late = specs, source, late
         self._listener, self._is_watched = listener, is_watched

@@ -36,11 +36,11 @@ class DriveOptions(WindowOptions, RecordOptions, SimulatorOptions, SumoOptions, 
 
     @property
     def shows_sensors(self) -> bool:
-        """Whether a page, a viewer, a bag or a topic shows what the agent's sensors measure."""
-        return self.watch or self.viewer or self.is_ros
+        """Whether a page, a bag or a topic shows what the agent's sensors measure."""
+        return self.watch or self.is_ros
 
     @property
     def needs_one_simulator(self) -> bool:
         """Whether drives cannot be driven at the same time: they share a simulator, a page, keys or topics."""
-        live = self.viewer or self.watch or self.ros2 or self.ros1
+        live = self.watch or self.ros2 or self.ros1
         return live or self.host is not None or self.keys is not None or self.record_keys is not None

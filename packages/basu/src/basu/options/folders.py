@@ -58,6 +58,11 @@ class SeriesOptions(Settings):
         default_text="none",
         repeats=False,
     )
+    details: bool = option(
+        False,
+        "print the figures of all metrics and the editions of CARLA's leaderboard as well",
+        repeats=False,
+    )
     series: str | None = option(
         None, "keep all runs in a folder of this name, with their totals in series.json", metavar="NAME", repeats=False
     )

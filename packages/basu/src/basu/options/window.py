@@ -1,4 +1,4 @@
-"""Options of the page, the viewer and recorded keys."""
+"""Options of the page and of recorded keys."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _PAGE = "--watch shows the drive, its sensors and its figures in a page of the b
 class WindowOptions(Settings):
     """What is shown of a drive, and keys."""
 
-    GROUP = "window, viewer and keys"
+    GROUP = "window and keys"
     GONE: ClassVar[Mapping[str, str]] = {
         "hud": _PAGE,
         "hud_camera": _PAGE,
         "hud_size": "the page has the size of the browser's window; --watch opens it",
         "hud_screenshot": "press K in the page of --watch, or make a film of the run with `basu watch RUN --film FILE`",
+        "viewer": f"{_PAGE}; --rosbag writes the sensors into a file that Rerun opens",
     }
 
-    viewer: bool = option(False, "stream the run to Rerun's viewer and keep it as run.rrd", repeats=False)
     watch: bool = option(
         False, "show the drive in a page of the browser and print its address; P takes over control", repeats=False
     )

@@ -19,6 +19,23 @@ SCORE_TICKS = 2000  # scoring anew costs some ms
 QUIET_S = 10.0  # between two lines without a terminal (a log file)
 
 
+def drives_bar(total: int, unit: str, *, initial: int = 0, quiet: bool = False) -> Any:  # noqa: ANN401 - tqdm's
+    """Return the bar of a command with many drives: how many are done, and the time left; it is a context manager.
+
+    Without a terminal a line is printed every ten seconds, and none for a shorter command.
+    """
+    is_seen = sys.stderr.isatty()
+    return tqdm(
+        total=total,
+        initial=initial,
+        unit=unit,
+        disable=quiet,
+        file=sys.stderr,
+        mininterval=0.1 if is_seen else QUIET_S,
+        delay=0.0 if is_seen else QUIET_S,
+    )
+
+
 class ProgressBar(BaseManager):
     """Kilometres of the route, simulated against wall time, and the driving score so far."""
 

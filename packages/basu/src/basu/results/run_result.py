@@ -135,7 +135,7 @@ class RunResult:
 
     def plot_path(self, *others: RunResult) -> Picture:
         """The paths of this run and others on the streets, with the planned route and the infractions."""
-        return Picture(paths_png([_trace(each) for each in (self, *others)], self._record.streets))
+        return Picture(paths_png([_trace(each) for each in (self, *others)], self._record.streets.lines))
 
     def plot_speed(self, *others: RunResult, by: str = "time") -> Picture:
         """The speeds of this run and others with the posted limit, ``by`` "time" in s or by "route" in m."""

@@ -30,6 +30,7 @@ class Road:
     """One road; places are m along its reference line, ascending, speeds m/s."""
 
     length_m: float
+    name: str  # of the street; empty for the connections within a junction
     section_starts_m: tuple[float, ...]
     limit_starts_m: tuple[float, ...]
     limits_mps: tuple[float, ...]  # nan where a stretch posts none
@@ -58,6 +59,7 @@ def _road(element: etree._Element) -> Road:
     posted = sorted((s, _limit_mps(e.find("speed"))) for s, e in _places(element.iterfind("type")))
     return Road(
         length_m=float(element.get("length", "0")),
+        name=element.get("name", "") if element.get("junction", "-1") == "-1" else "",
         section_starts_m=tuple(sorted(s for s, _ in _places(element.iterfind("lanes/laneSection")))),
         limit_starts_m=tuple(s for s, _ in posted),
         limits_mps=tuple(limit for _, limit in posted),
@@ -91,6 +93,13 @@ class LaneKey(NamedTuple):
     lane: int
 
 
+class Street(NamedTuple):
+    """A lane as a picture of the town shows it."""
+
+    points_m: NDArray[np.float64]  # (K, 2) of its centre line, CARLA frame
+    name: str  # of its road
+
+
 @dataclass(frozen=True, slots=True)
 class LaneGraph:
     """All driving lanes of a map, with points on them to find them by (M samples)."""
@@ -103,11 +112,14 @@ class LaneGraph:
     yaw_rad: NDArray[np.float64]  # (M,) of the lane, CARLA frame
     roads: dict[int, Road]
 
-    def streets(self) -> list[NDArray[np.float64]]:
-        """The lanes' centre lines as polylines in the plane, each (K, 2) in m: the town as a picture shows it."""
+    def streets(self) -> list[Street]:
+        """Return the lanes as a picture of the town shows them."""
         order = np.lexsort((self.s_m, self.key_of_sample))
         cuts = np.flatnonzero(np.diff(self.key_of_sample[order])) + 1
-        return [self.points_m[lane, :2] for lane in np.split(order, cuts)]
+        return [
+            Street(self.points_m[lane, :2], self.roads[self.keys[self.key_of_sample[lane[0]]].road].name)
+            for lane in np.split(order, cuts)
+        ]
 
 
 def key_of(waypoint: carla.Waypoint) -> LaneKey:

@@ -1,4 +1,4 @@
-"""Outputs: what shows or writes a drive while it lasts. Plugins bring them: the window, Rerun's viewer, ROS."""
+"""Outputs: what shows or writes a drive while it lasts. Plugins bring them: the window, ROS."""
 
 from __future__ import annotations
 
@@ -41,7 +41,6 @@ def _wanted(options: DriveOptions, *, has_person: bool) -> dict[str, str]:
     """Return the outputs of this project that a drive needs, each with what needs it."""
     ros = {"--ros2": options.ros2, "--ros1": options.ros1, "--rosbag": options.rosbag is not None}
     found = {"window": "a person at the wheel" if has_person else _flag_of_person(options)}
-    found["viewer"] = "--viewer" if options.viewer else None
     found["ros"] = next((flag for flag, is_set in ros.items() if is_set), None)
     return {name: flag for name, flag in found.items() if flag is not None}
 
@@ -93,6 +92,6 @@ def check_outputs(options: DriveOptions) -> None:
 
 
 def output_managers(options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
-    """Return the managers of all outputs, in their order: window, viewer, ROS, then those of other projects."""
+    """Return the managers of all outputs, in their order: window, ROS, then those of other projects."""
     outputs = _outputs(options, has_person=drive.live.agents.person is not None)
     return [manager for output in outputs for manager in output.managers(options, drive)]

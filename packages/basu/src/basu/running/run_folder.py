@@ -224,14 +224,14 @@ def write_run_folder(
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
-    streets = [] if history is None or lanes is None else around(lanes.streets(), history)
+    streets = around([] if lanes is None else lanes.streets(), history)
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
         if pictures:
             from basu.output.report import path_picture  # noqa: PLC0415 - see PICTURES
 
-            path_picture.draw(folder / PICTURE_FILE, history, streets, title, scoring)
+            path_picture.draw(folder / PICTURE_FILE, history, streets.lines, title, scoring)
     write_streets(folder, streets)
     if pictures:
         from basu.output.report.html.page import write_report  # noqa: PLC0415 - see PICTURES

@@ -12,7 +12,7 @@ from basu.jobs.job import Job
 from basu.jobs.playing import play_jobs
 from basu.outcome import Status
 from basu.output.report.console import table
-from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, read_run, run_name
+from basu.output.report.documents import CONFIG_FILE, LATEST, TEXT_FILE, plain, point_latest, read_run, run_name
 from basu.output.report.shuttles import contact_lines, read_shuttles, shuttle_line
 from basu.running.batch import Batch
 from basu.running.exit_code import exit_code
@@ -154,13 +154,15 @@ def show(done: DriveDone, options: RunOptions) -> int:
     for number, each in enumerate(done.results):
         if document is not None:
             print(shuttle_line(document, number))
-        print(table(each))
+        print(table(each, details=options.details))
     if document is not None:
         print("\n".join(contact_lines(document)))
     if options.record:
         recording = read_run(done.folder).config["recording"]
         print(f"recording         {recording['file']} ({recording['where']})")
     print(f"result folder     {done.folder}")
+    if not options.details:
+        print(f"further figures   {TEXT_FILE} in this folder; --details prints them here")
     print(f"to repeat         basu run --config {shlex.quote(f'{done.folder}/{CONFIG_FILE}')}")
     if isinstance(done.bug, Exception):
         raise done.bug

@@ -81,7 +81,17 @@ def test_a_case_is_safe_by_its_verdict() -> None:
 
 def test_console_and_page_begin_with_them() -> None:
     lines = table(judge(DONE, driven(CALM), meta={"simulated_s": 20.0, "wall_s": 1.0})).splitlines()
-    assert [line.split()[0] for line in lines[1:4]] == ["safe", "comfortable", "on"]
+    assert [line.split()[0] for line in lines[:4]] == ["safe", "comfortable", "on", "ended"]
     page = report(record(crashing())).decode()
     assert page.index('<dl class="in-words">') < page.index("<h2>")
     assert '<dt>Safe?</dt><dd><b class="no">No</b>' in page
+
+
+def test_the_console_has_the_figures_of_all_metrics_with_details_only() -> None:
+    result = judge(DONE, crashing(), meta={"simulated_s": 20.0, "wall_s": 1.0})
+    short, whole = table(result, details=False).splitlines(), table(result).splitlines()
+    assert whole[: len(short)] == short
+    assert not any(line.startswith(("leaderboard", "passengers", "driven")) for line in short)
+    assert sum(line.startswith("leaderboard") for line in whole) == 3
+    for found in result.infractions:
+        assert any(found.detail in line for line in short)

@@ -10,7 +10,7 @@ import { DebugShapes } from "./debug.js";
 import { DrivingInput } from "./input.js";
 import { Map2d, colourOf, endsOf } from "./map2d.js";
 import { Panes } from "./panes.js";
-import { aboutActor, element, help, list, say, showReadings, showScore, unsay } from "./panel.js";
+import { aboutActor, element, help, list, say, showReadings, showReports, showScore, unsay } from "./panel.js";
 import { Replay } from "./replay.js";
 import { Timeline } from "./timeline.js";
 import { World } from "./world.js";
@@ -192,9 +192,10 @@ class Page {
     this.replay.showMarks(marks);
   }
 
-  /** @param {{frames: string, facts: string}} note */
+  /** @param {{frames: string, facts: string, reports: {name: string, path: string}[]}} note */
   async record(note) {
     if (this.replay.isOn) return;
+    showReports(note.reports);
     const [frames, facts] = await Promise.all([fetch(note.frames), fetch(note.facts)]);
     this.timeline.read(await frames.arrayBuffer());
     const told = await facts.json();

@@ -167,6 +167,18 @@ function graphOf(impulses) {
   return canvas;
 }
 
+/** Show the links to the reports of recorded runs. @param {{name: string, path: string}[]} reports */
+export function showReports(reports) {
+  const links = reports.map(({ name, path }) => {
+    const link = document.createElement("a");
+    link.href = path;
+    link.textContent = name;
+    return link;
+  });
+  element("reports").replaceChildren(...links);
+  element("reports").hidden = links.length === 0;
+}
+
 /** @param {ScorePanel} panel */
 export function showScore(panel) {
   const section = element("score");

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 
+DIFFERENT_CONDITIONS = "These runs had different conditions, which alone may explain a difference"
 COMPARED = frozenset({"basu", "carla"})  # programs of which another version may change a drive
 
 
@@ -116,9 +117,9 @@ def reasons(runs: Sequence[RunRecord]) -> list[str]:
     return [f"{name} {said.sentence}" for name, said in zip(names, asked, strict=True) if not said.passed]
 
 
-def remarks(runs: Sequence[RunRecord]) -> list[str]:
-    """Return what has to be said before these runs are compared: other routes, other rules."""
-    found = []
+def remarks(runs: Sequence[RunRecord], *, conditions: bool = True) -> list[str]:
+    """Return what has to be said before these runs are compared: conditions (if wanted), routes, rules."""
+    found = _conditions(runs) if conditions else []
     routes = {f"{run.result.meta['route']} of {run.result.meta['town']}" for run in runs if run.result.meta}
     if len(routes) > 1 or not on_one_route(runs):
         named = f" ({', '.join(sorted(routes))})" if len(routes) > 1 else ""
@@ -133,24 +134,26 @@ def remarks(runs: Sequence[RunRecord]) -> list[str]:
     if incomparable:
         named = "; ".join(f"{agent} ({reason})" for agent, reason in incomparable)
         found.append(f"The scores of these runs are not comparable: {named}.")
-    found += _conditions(runs)
     if len({_rules(run.result.scoring) for run in runs}) > 1:
         found.append("These runs were scored with different penalties or weights; `basu score` scores them alike.")
     return found
 
 
+def different_conditions(runs: Sequence[RunRecord]) -> dict[str, list[str]]:
+    """Return the conditions in which the runs differ: the name of each, with its value in each run."""
+    given = [_conditions_of(run.result.meta) for run in runs]
+    names = [name for name in dict.fromkeys(name for each in given for name in each) if _differ(given, name)]
+    return {name: [each.get(name, "none") for each in given] for name in names}
+
+
 def _conditions(runs: Sequence[RunRecord]) -> list[str]:
     """Return a sentence that names each condition in which the runs differ; nothing if they differ in none."""
-    names = [each.agent for each in rows(runs)]
-    given = [_conditions_of(run.result.meta) for run in runs]
-    differing = [name for name in dict.fromkeys(name for each in given for name in each) if _differ(given, name)]
-    if not differing:
-        return []
+    agents = [each.agent for each in rows(runs)]
     parts = [
-        f"{name} " + ", ".join(f"{each.get(name, 'none')} ({agent})" for agent, each in zip(names, given, strict=True))
-        for name in differing
+        f"{name} " + ", ".join(f"{value} ({agent})" for agent, value in zip(agents, values, strict=True))
+        for name, values in different_conditions(runs).items()
     ]
-    return [f"These runs had different conditions, which alone may explain a difference: {'; '.join(parts)}."]
+    return [f"{DIFFERENT_CONDITIONS}: {'; '.join(parts)}."] if parts else []
 
 
 def _differ(given: Sequence[Mapping[str, str]], name: str) -> bool:

@@ -12,6 +12,8 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
 from basu.output.report.comparison import (
+    DIFFERENT_CONDITIONS,
+    different_conditions,
     heads,
     histories,
     reasons,
@@ -22,8 +24,8 @@ from basu.output.report.comparison import (
     text,
 )
 from basu.output.report.comparison_picture import draw
-from basu.output.report.documents import read_run
-from basu.output.report.html.page import REPORT_FILE, legend, page
+from basu.output.report.documents import REPORT_FILE, read_run
+from basu.output.report.html.page import legend, page
 from basu.output.report.plots.chart import Curve, chart
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
@@ -52,7 +54,9 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
     body = render(
         "templates/comparison.j2",
         agents=[row.agent for row in compared],
-        remarks=[*reasons(runs), *remarks(runs)],
+        different=DIFFERENT_CONDITIONS,
+        conditions=different_conditions(runs),
+        remarks=[*remarks(runs, conditions=False), *reasons(runs)],
         tables=[
             _scores(group, reports, beside, titled(track) if len(groups) > 1 else "") for track, group in groups.items()
         ],
@@ -120,7 +124,7 @@ def _pictures(run: RunRecord, shared: Bounds | None, axes: _Axes) -> list[Elemen
         for number, found in enumerate(run.result.infractions, start=1)
     ]
     return [
-        plain_map(run.history, run.streets, bounds, places),
+        plain_map(run.history, run.streets.lines, bounds, places),
         chart(
             felt.t_s,
             curves,
@@ -161,4 +165,4 @@ def compared(folders: Sequence[Path]) -> str:
 
 
 def _table(runs: Sequence[RunRecord]) -> str:
-    return "\n".join([text(rows(runs)), *reasons(runs), *remarks(runs)])
+    return "\n".join([text(rows(runs)), *remarks(runs), *reasons(runs)])

@@ -43,7 +43,7 @@ def draw(path: Path, runs: Sequence[RunRecord]) -> None:
             axes.text(0.5, 0.5, "nothing was driven", ha="center", transform=axes.transAxes)
             axes.set_axis_off()
             continue
-        show_map(axes, run.streets, run.history, shared or bounds_of(run.history))
+        show_map(axes, run.streets.lines, run.history, shared or bounds_of(run.history))
         show_drive(axes, run.history)
         show_end(axes, run.history)
         show_infractions(axes, run.result.infractions, is_named=False)

@@ -22,19 +22,22 @@ SCORES = {"driving": "driving score", "infraction": "  infractions", "path_follo
 NOT_COMPARABLE = "NOT COMPARABLE"
 
 
-def table(result: Result) -> str:
-    """Return a result as lines of text."""
-    lines = [f"{result.outcome.status.value}: {result.outcome.message}"]
+def table(result: Result, *, details: bool = True) -> str:
+    """Return a result as text: answers, score and infractions, and with ``details`` the figures of all metrics."""
+    ended = f"{result.outcome.status.value}: {result.outcome.message}"
     if result.scores is None:
-        return "\n".join([*lines, "nothing was driven, so there is no score"])
+        return f"{ended}\nnothing was driven, so there is no score"
     return "\n".join(
         [
-            *lines,
             *(f"{answer.question:<{NAME_WIDTH}}{answer.sentence}" for answer in answers(result)),
+            f"{'ended':<{NAME_WIDTH}}{ended}",
             *success_lines(result),
             *score_lines(result),
-            *judgement(result),
+            *infraction_lines(result),
             *met([dict(row) for row in result.scenarios]),
+            *(line for own in result.own.values() for line in own.lines(result)),
+            *_simulated(result.meta),
+            *(metric_lines(result) if details else []),
         ]
     )
 
@@ -93,18 +96,21 @@ def _access(result: Result) -> list[str]:
     return lines
 
 
+def infraction_lines(result: Result) -> list[str]:
+    """Return the number of infractions, and a line or two for each."""
+    count = f"{'infractions':<{NAME_WIDTH}}{len(result.infractions):>8}"
+    return [count, *(line for found in result.infractions for line in _infraction(found))]
+
+
 def judgement(result: Result) -> list[str]:
-    """Infractions and metrics; a metric of nothing that happened takes no line."""
-    metrics = built_in()
-    figures = [metric for metric in metrics if metric.order <= 0]
-    return [
-        f"{'infractions':<{NAME_WIDTH}}{len(result.infractions):>8}",
-        *(line for metric in figures for line in metric.lines(result)),
-        *_simulated(result.meta),
-        *(line for found in result.infractions for line in _infraction(found)),
-        *(line for metric in metrics if metric.order > 0 for line in metric.lines(result)),
-        *(line for own in result.own.values() for line in own.lines(result)),
-    ]
+    """Return infractions, users' metrics and the metrics of BASU."""
+    own = (line for each in result.own.values() for line in each.lines(result))
+    return [*infraction_lines(result), *own, *metric_lines(result)]
+
+
+def metric_lines(result: Result) -> list[str]:
+    """Return the lines of the metrics of BASU; a metric of nothing that happened takes no line."""
+    return [line for metric in built_in() for line in metric.lines(result)]
 
 
 def _infraction(found: Evidence) -> list[str]:

@@ -26,11 +26,12 @@ if TYPE_CHECKING:
     import jsonschema
     from jsonschema.protocols import Validator
 
-    from basu.output.report.streets import Line
+    from basu.output.report.streets import Streets
     from basu.records.history import History
 
 
 CONFIG_FILE, RESULT_FILE, TEXT_FILE, PICTURE_FILE = "config.json", "result.json", "result.txt", "path.png"
+REPORT_FILE = "report.html"
 LATEST = "latest"
 DRAFTS = ".*.part"  # the names of drafts, for Path.glob
 
@@ -214,7 +215,7 @@ class RunRecord:
     config: dict[str, Any]  # config.json
     result: Result  # result.json
     history: History | None  # None where nothing was driven
-    streets: list[Line]
+    streets: Streets
 
     @property
     def agent(self) -> str:

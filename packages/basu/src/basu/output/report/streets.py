@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.records.history import History
+    from basu.routing.lane_graph import Street
 
 STREETS_FILE = "streets.json"
 SCHEMA_VERSION = 1
@@ -26,6 +29,14 @@ EDGE_M = 1e6  # no town is so large
 TOLERANCE_M = 0.25  # which a lane's line may be off
 
 Line = list[tuple[float, float]]  # x, y in m, CARLA frame
+GENERATED = re.compile(r"unnamed\b|road\s*\d*$", re.IGNORECASE)  # names that map editors give: "Road 12"
+
+
+class Streets(NamedTuple):
+    """The lanes around a run as lines, and the name of each lane's street; empty where it has none."""
+
+    lines: list[Line]
+    names: list[str]
 
 
 class Bounds(NamedTuple):
@@ -67,38 +78,42 @@ def union(found: Sequence[Bounds]) -> Bounds:
     return Bounds(min(west_m), min(north_m), max(east_m), max(south_m))
 
 
-def around(streets: Sequence[NDArray[np.float64]], history: History) -> list[Line]:
-    """Those of ``streets``, lanes' centre lines (K, 2) in m, that come near the run; straight stretches thinned out."""
+def around(streets: Sequence[Street], history: History | None) -> Streets:
+    """Return those of ``streets`` that come near the run, straight stretches thinned out; none without a record."""
+    found = Streets([], [])
+    if history is None:
+        return found
     west_m, north_m, east_m, south_m = bounds_of(history)
-    found = []
-    for lane in streets:
+    for lane, name in streets:
         x_m, y_m = lane[:, 0], lane[:, 1]
         if x_m.max() >= west_m and x_m.min() <= east_m and y_m.max() >= north_m and y_m.min() <= south_m:
-            found.append([(round(x, 2), round(y, 2)) for x, y in path(lane, TOLERANCE_M)])
+            found.lines.append([(round(x, 2), round(y, 2)) for x, y in path(lane, TOLERANCE_M)])
+            found.names.append("" if GENERATED.match(name) else name)
     return found
 
 
-def write_streets(folder: Path, streets: Sequence[Line]) -> None:
+def write_streets(folder: Path, streets: Streets) -> None:
     """Write ``streets.json``.
 
     Raises:
         UserError: the disk is full or the folder cannot be written.
     """
-    document = {"schema_version": SCHEMA_VERSION, "lanes_m": streets}
+    document = {"schema_version": SCHEMA_VERSION, "lanes_m": streets.lines, "names": streets.names}
     write_bytes(folder / STREETS_FILE, json.dumps(document, separators=(",", ":")).encode())
 
 
-def read_streets(folder: Path) -> list[Line]:
-    """Return the lanes of a run folder; none where it is older than this file.
+def read_streets(folder: Path) -> Streets:
+    """Return the lanes of a run folder; none, or none with names, where it is older than these.
 
     Raises:
         UserError: the file is not what it should be.
     """
     file = folder / STREETS_FILE
     if not file.exists():
-        return []
+        return Streets([], [])
     try:
         document = loads(file.read_text(encoding="utf-8"))
-        return [[(float(x), float(y)) for x, y in lane] for lane in document["lanes_m"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        lines = [[(float(x), float(y)) for x, y in lane] for lane in document["lanes_m"]]
+        return Streets(lines, [str(name) for _, name in zip_longest(lines, document.get("names", []), fillvalue="")])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UserError(f"{file} is no map of streets: {error!r}; without the file, the report has none") from error

@@ -8,8 +8,6 @@ import time
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tqdm import tqdm
-
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.jobs.job import Job
@@ -18,6 +16,7 @@ from basu.managers.agents_manager import ignored_wishes
 from basu.metrics.registry import user_metrics
 from basu.metrics.scoring import Scoring
 from basu.outcome import Fault
+from basu.output.progress import drives_bar
 from basu.output.report.documents import CONFIG_FILE, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
 from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
@@ -141,7 +140,7 @@ def _play(
     """
     jobs = [Job(number, suite.job(number)) for number in range(len(suite.drives)) if number not in found]
     try:
-        with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
+        with drives_bar(len(jobs), " cases", quiet=quiet) as bar:
             for done in batch.play(play_jobs(player, jobs, workers), bar):
                 found[done.number] = done if done.folder is not None else suite.lost(done)
     except KeyboardInterrupt:

@@ -34,15 +34,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.episode import Towns
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
+    from basu.routing.lane_graph import Street
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.playable import Playable
     from basu.scenarios.verdict import Judged
@@ -85,7 +83,7 @@ class _Attempt(NamedTuple):
     driven: Driven
     config: AgentConfig
     playing: Playing | None = None
-    streets_m: Sequence[NDArray[np.float64]] = ()
+    streets: Sequence[Street] = ()
     access: dict[str, Any] | None = None  # of the agent to the simulator
     traffic: Mapping[str, int] = NO_OTHERS
     log: str | None = None  # CARLA's log, as the simulator gave its path
@@ -145,10 +143,10 @@ def play_case(
         write_json(draft / CONFIG_FILE, config)
         if history is not None:
             write_history(draft, history)
-            streets = around(attempt.streets_m, history)
+            streets = around(attempt.streets, history)
             write_streets(draft, streets)
             if session.pictures:
-                write_bytes(draft / PICTURE_FILE, case_picture(case, history, streets).encode())
+                write_bytes(draft / PICTURE_FILE, case_picture(case, history, streets.lines).encode())
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
@@ -195,7 +193,7 @@ def _attempt(
     except (UserError, AgentError, SimulatorError) as error:
         outcome = outcome_of(error, session.simulator.why_gone)
         agent_error = error if isinstance(error, AgentError) else None
-        return _Attempt(Driven(outcome, None, 0.0, None, None, agent_error), spec.config, streets_m=_streets(one))
+        return _Attempt(Driven(outcome, None, 0.0, None, None, agent_error), spec.config, streets=_streets(one))
     if driven.bug is not None:
         traceback.print_exception(driven.bug)
     playing = next(iter(one.episode.playing), None)
@@ -204,9 +202,9 @@ def _attempt(
     )
 
 
-def _streets(one: AgentDrive | None) -> list[NDArray[np.float64]]:
+def _streets(one: AgentDrive | None) -> list[Street]:
     """The lanes of an episode's town, where it was loaded."""
-    return [] if one is None or one.episode.ground is None else one.episode.ground.town.streets_m
+    return [] if one is None or one.episode.ground is None else one.episode.ground.town.streets
 
 
 def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager, SensorSet]:

@@ -26,6 +26,7 @@ def test_it_asks_no_actor_for_anything_and_does_not_complain(context: BrowserCon
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.goto(file.as_uri())
+    page.locator("#plots summary").click()
     page.locator("#speed .plot").hover()
     assert asked == [file.as_uri()]
     assert said == []
@@ -66,6 +67,7 @@ def test_a_link_from_outside_opens_the_evidence(context: BrowserContext, file: P
 
 def test_a_moment_in_a_plot_is_shown_on_the_map_and_in_all_plots(page: Page) -> None:
     assert page.locator("#here").is_hidden()
+    page.locator("#plots summary").click()
     page.locator("#speed .plot").scroll_into_view_if_needed()
     box = page.locator("#speed .plot").bounding_box()
     assert box is not None
@@ -104,3 +106,36 @@ def test_it_can_be_read_without_its_script(browser: Browser, file: Path) -> None
     assert page.locator("#infraction-1 dl").is_visible()
     assert not page.locator(".moment").is_visible()  # nothing that does nothing
     context.close()
+
+
+def test_the_replay_of_a_moment_is_a_command_in_a_file_and_a_link_at_the_window(browser: Browser, file: Path) -> None:
+    page = browser.new_page()
+    page.goto(f"{file.as_uri()}#infraction-3")
+    replay = page.locator("#infraction-3 .replay")
+    assert replay.locator("code").inner_text() == f"basu watch {file.parent} --at 4.7"
+    assert not replay.locator("a").is_visible()
+    page.locator("#moment").evaluate("(slider) => { slider.value = 0; slider.dispatchEvent(new Event('input')); }")
+    assert page.locator("#replay code").inner_text() == f"basu watch {file.parent} --at 0.0"
+    page.route("**/record/report-1.html", lambda route: route.fulfill(path=file))
+    page.goto("http://127.0.0.1:9/token/record/report-1.html#infraction-3")
+    assert replay.locator("a").get_attribute("href") == "../?t=4.7"
+    assert replay.locator("a").is_visible()
+    assert not replay.locator("code").is_visible()
+    page.close()
+
+
+@pytest.mark.parametrize(
+    ("index", "is_shown"),
+    [("../index.html", True), ("../../index.html", True), ("javascript:alert(1)", False), ("//a.b/index.html", False)],
+)
+def test_a_report_that_the_index_opened_links_back_to_it_and_nowhere_else(
+    context: BrowserContext,
+    file: Path,
+    index: str,
+    is_shown: bool,  # noqa: FBT001 - a case
+) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}?index={index}#configuration")
+    assert page.locator("#all-runs").is_visible() is is_shown
+    assert page.locator("#all-runs").get_attribute("href") == (index if is_shown else None)
+    assert page.locator("#configuration pre").is_visible(), "a link to the settings opens them"

@@ -146,8 +146,8 @@ def test_a_run_amid_sumo_s_traffic_shows_its_load_and_the_riders_of_each_stop() 
 
 def test_the_evidence_of_a_missed_stop_shows_the_line_and_the_sign() -> None:
     page = report(record(crashing())).decode()
-    drawn = re.search(
-        r'<title>stop sign \S*</title><path d="(M[^"]*)" class="stop-line">.*?<polygon points="([^"]*)"', page
+    drawn = re.findall(
+        r'<title>stop sign \S*</title><path d="M[^"]*" class="stop-line( broken)?">.*?<polygon points="([^"]*)"', page
     )
-    assert drawn is not None
-    assert len(drawn[2].split()) == 8  # an octagon
+    assert all(len(sign.split()) == 8 for _, sign in drawn), "octagons"
+    assert [broken for broken, _ in drawn].count(" broken") == 1, "red where the sign was missed, and nowhere else"

@@ -10,9 +10,10 @@ from basu.output.report.events import events
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
-from basu.output.report.streets import around, bounds_of, read_streets, union, write_streets
+from basu.output.report.streets import Streets, around, bounds_of, read_streets, union, write_streets
 from basu.output.report.templates import html
 from basu.records.history import LaneInvasion
+from basu.routing.lane_graph import Street
 from fakes.drives import at, driven
 from fakes.run_records import STREETS, crashing, record
 
@@ -41,7 +42,9 @@ def test_streets_far_from_the_run_are_left_out_and_straight_ones_thinned() -> No
     history = driven(at(8.0, 25.0))
     near = np.column_stack([np.linspace(-30.0, 230.0, 200), np.full(200, 5.0)])
     far = near + np.array([0.0, 500.0])
-    assert around([near, far], history) == [[(-30.0, 5.0), (230.0, 5.0)]]
+    found = around([Street(near, "E 15th Ave"), Street(near, "Road 12"), Street(far, "Far Street")], history)
+    assert found == Streets([[(-30.0, 5.0), (230.0, 5.0)]] * 2, ["E 15th Ave", ""])
+    assert around([Street(near, "E 15th Ave")], None) == Streets([], [])
 
 
 def test_streets_come_back_from_their_file(tmp_path) -> None:
@@ -50,7 +53,12 @@ def test_streets_come_back_from_their_file(tmp_path) -> None:
 
 
 def test_a_folder_without_streets_has_none(tmp_path) -> None:
-    assert read_streets(tmp_path) == []
+    assert read_streets(tmp_path) == Streets([], [])
+
+
+def test_streets_of_an_earlier_version_have_no_names(tmp_path) -> None:
+    (tmp_path / "streets.json").write_text('{"lanes_m": [[[1, 2], [3, 4]]]}')
+    assert read_streets(tmp_path) == Streets([[(1.0, 2.0), (3.0, 4.0)]], [""])
 
 
 def test_a_broken_file_of_streets_is_refused(tmp_path) -> None:

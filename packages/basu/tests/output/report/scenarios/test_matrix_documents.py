@@ -22,7 +22,7 @@ from basu.output.report.scenarios.matrix_documents import (
 from basu.output.report.streets import write_streets
 from basu.records.history.files import write_history
 from fakes.results import META, a_result
-from fakes.scenario_documents import STREETS, case_result, crossing, failed, grid, matrix, sweep
+from fakes.scenario_documents import NAMED, case_result, crossing, failed, grid, matrix, sweep
 
 
 def whole(case: dict[str, Any]) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def test_each_mistake_gets_a_sentence(document: dict[str, Any], name: str) -> No
 def test_a_case_comes_back_from_its_folder(tmp_path: Path) -> None:
     write_json(tmp_path / RESULT_FILE, whole(case_result()))
     write_history(tmp_path, crossing())
-    write_streets(tmp_path, STREETS)
+    write_streets(tmp_path, NAMED)
     record = read_case(tmp_path)
     assert record.case == case_result()
     assert record.result is not None
@@ -78,7 +78,7 @@ def test_a_case_comes_back_from_its_folder(tmp_path: Path) -> None:
     assert record.result.scores is not None
     assert record.history is not None
     assert len(record.history.frames) == 240
-    assert record.streets == STREETS
+    assert record.streets == NAMED
 
 
 def test_a_case_of_an_earlier_version_is_still_read(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from basu.output.report import events
 from basu.output.report.plots.chart import Curve, Flag, chart
+from basu.output.report.plots.street_names import street_at
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
 from basu.output.report.templates import DASH, TIMES, e, figure, number, render
@@ -22,10 +23,12 @@ if TYPE_CHECKING:
 
     from basu.output.report.events import MarkedEvent
     from basu.output.report.plots.signals import Signals
+    from basu.output.report.streets import Streets
     from basu.records.history import History
 
 PICTURED = 60  # events with pictures; further events have words only
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
+LEAD_S = 2.0  # from where the replay begins to an event
 AROUND_S = 8.0  # of speed, before and after
 SIGN_M, SIGN_BESIDE_M = 1.3, 2.2  # a sign's radius in close-ups, and its distance from the lane's edge
 SIGNS = {  # corners of a sign's outline, and the direction of the first as seen from its middle
@@ -33,10 +36,11 @@ SIGNS = {  # corners of a sign's outline, and the direction of the first as seen
     ControlKind.YIELD_SIGN: (3, math.pi / 2.0),  # with the tip below
     ControlKind.TRAFFIC_LIGHT: (4, math.pi / 4.0),
 }
+BROKEN = {"stop_sign": ControlKind.STOP_SIGN, "red_light": ControlKind.TRAFFIC_LIGHT}  # by kind of infraction
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded size
 
 
-def evidence(history: History, felt: Signals, found: Sequence[MarkedEvent]) -> Markup:
+def evidence(history: History, felt: Signals, found: Sequence[MarkedEvent], streets: Streets) -> Markup:
     """Return the infractions, and what is not scored, each one to be opened and linked to."""
     scored: list[tuple[MarkedEvent, Element, list[Element], list[tuple[str, str]]]] = []
     rest: list[tuple[MarkedEvent, Element, list[Element], list[tuple[str, str]]]] = []
@@ -45,9 +49,11 @@ def evidence(history: History, felt: Signals, found: Sequence[MarkedEvent]) -> M
         so_far *= 1.0 if event.factor is None else event.factor
         pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
         symbol = events.symbol(event.kind, event.label, scored=event.factor is not None)
-        (rest if event.factor is None else scored).append((event, symbol, pictures, _facts(event, so_far)))
-    sections = [("Infractions", "infractions", scored), ("Seen, not scored", "events", rest)]
-    return render("templates/evidence.j2", sections=sections)
+        (rest if event.factor is None else scored).append(
+            (event, symbol, pictures, _facts(event, so_far, street_at(streets, event.x_m, event.y_m)))
+        )
+    sections = [("Infractions", "infractions", scored, False), ("Seen, not scored", "events", rest, True)]
+    return render("templates/evidence.j2", sections=sections, LEAD_S=LEAD_S)
 
 
 def close_up(history: History, event: MarkedEvent) -> Element:
@@ -63,7 +69,7 @@ def close_up(history: History, event: MarkedEvent) -> Element:
         viewBox=view(bounds),
         role="img",
     )
-    picture.extend(_controls(history, bounds))
+    picture.extend(_controls(history, bounds, event))
     for other in history.others[history.others["tick"] == event.tick]:
         half_m = history.facts.actor_sizes.get(int(other["id"]), UNKNOWN_HALF_M)
         kind = history.facts.actor_types.get(int(other["id"]), "")
@@ -82,23 +88,27 @@ def close_up(history: History, event: MarkedEvent) -> Element:
     return e("figure", caption, e("div", picture, class_="map", style=box(bounds, 480.0)))
 
 
-def _controls(history: History, bounds: Bounds) -> list[Element]:
-    """Return the lines to stop at within the bounds, each across the route's lane with its sign at the right edge."""
+def _controls(history: History, bounds: Bounds, event: MarkedEvent) -> list[Element]:
+    """Return the lines to stop at within the bounds, each across the route's lane with its sign at the right edge.
+
+    The ones of the kind that the event breaks are red.
+    """
     route, found = history.facts.route, []
     for control in route.controls:
         if not (bounds.west_m < control.x_m < bounds.east_m and bounds.north_m < control.y_m < bounds.south_m):
             continue
+        broken = " broken" if event.factor is not None and BROKEN.get(event.kind) is control.kind else ""
         half_m = 0.5 * float(np.interp(control.s_m, route.s_m, route.lane_width_m))
         right = np.array([-math.sin(control.yaw_rad), math.cos(control.yaw_rad)])  # CARLA's y points south
         middle = np.array([control.x_m, control.y_m])
         (x1, y1), (x2, y2) = middle - half_m * right, middle + half_m * right
         title = e("title", f"{control.kind.value.replace('_', ' ')} {control.landmark_id}")
-        line = e("path", d=f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}", class_="stop-line")
+        line = e("path", d=f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}", class_=f"stop-line{broken}")
         corners, turn_rad = SIGNS[control.kind]
         angles = turn_rad + np.arange(corners) * math.tau / corners
         sign = middle + (half_m + SIGN_BESIDE_M) * right + SIGN_M * np.column_stack([np.cos(angles), np.sin(angles)])
         points = " ".join(f"{number(x)},{number(y)}" for x, y in sign.tolist())
-        found.append(e("g", title, line, e("polygon", points=points, class_=f"road-sign {control.kind.value}")))
+        found.append(e("g", title, line, e("polygon", points=points, class_=f"road-sign {control.kind.value}{broken}")))
     return found
 
 
@@ -132,12 +142,13 @@ def _speed(felt: Signals, event: MarkedEvent) -> Element:
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
-def _facts(event: MarkedEvent, so_far: float) -> list[tuple[str, str]]:
+def _facts(event: MarkedEvent, so_far: float, street: str) -> list[tuple[str, str]]:
     """Return the figures, each with its name."""
     return [
         ("time", f"{event.t_s:.2f} s, tick {event.tick}"),
         ("speed", DASH if event.speed_mps is None else f"{event.speed_mps:.2f} m/s"),
         ("along the route", f"{event.route_s_m:.1f} m"),
+        *([("street", street)] if street else []),
         ("place", f"x {event.x_m:.2f} m, y {event.y_m:.2f} m"),
         ("other party", event.other or "none"),
         ("costs", _cost(event.factor, so_far)),

@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from basu.files import write_bytes
 from basu.metrics.registry import built_in
+from basu.output.report.documents import REPORT_FILE
 from basu.output.report.events import events
 from basu.output.report.html.evidence import evidence
 from basu.output.report.html.score_card import rows, score_card, table
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
-REPORT_FILE = "report.html"
 HERE = Path(__file__).parent
 SAMPLES = 1500  # moments that the script can show: about one for each pixel of a chart
 
@@ -76,14 +76,14 @@ def report(run: RunRecord) -> bytes:
     felt, found = signals(history), events(result)
     script = (HERE / "report.js").read_text(encoding="utf-8")
     values |= {
-        "legend": legend(more=_map_legend(has_streets=bool(run.streets))),
+        "legend": legend(more=_map_legend(has_streets=bool(run.streets.lines))),
         "town_map": town_map(history, run.streets, found),
         "last_s": float(history.frames["t_s"][-1]),
         "samples_number": SAMPLES,
         "timeline": timeline(history, felt, result, found),
-        "scenarios": on_the_way(result, run.config.get("command", []), history, run.streets),
+        "scenarios": on_the_way(result, run.config.get("command", []), history, run.streets.lines),
         "charts": charts(history, felt, found),
-        "evidence": evidence(history, felt, found),
+        "evidence": evidence(history, felt, found, run.streets),
         "sections": [
             (metric.name, f"{metric.title[0].upper()}{metric.title[1:]}", table(rows(result.metrics[metric.name])))
             for metric in built_in()

@@ -14,6 +14,23 @@
     offset: (i) => (samples.offset[i] === null ? "no lane" : `${samples.offset[i]} m`),
   };
 
+  // `basu watch` serves reports below record/, and its page takes a moment; from a disk, a command names this folder
+  const isServed = /^http/.test(location.protocol) && /\/record\/[^/]*$/.test(location.pathname);
+  const folder = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") : ".";
+  const quoted = /^[\w./-]+$/.test(folder) ? folder : `'${folder.replaceAll("'", "'\\''")}'`;
+
+  function replayAt(place, seconds) {
+    const link = place.querySelector("a");
+    link.dataset.at = seconds;
+    link.textContent = `Replay from ${seconds} s`;
+    link.href = `../?t=${seconds}`;
+    link.hidden = !isServed;
+    place.querySelector("span").hidden = isServed;
+    place.querySelector("code").textContent = `basu watch ${quoted} --at ${seconds}`;
+    if (folder !== ".") place.querySelector("span").firstChild.textContent = "";
+  }
+  for (const place of document.querySelectorAll(".replay")) replayAt(place, place.querySelector("a").dataset.at);
+
   function show(index) {
     const i = Math.min(last, Math.max(0, index));
     slider.value = i;
@@ -22,6 +39,7 @@
     here.hidden = false;
     here.style.left = `${samples.left[i]}%`;
     here.style.top = `${samples.top[i]}%`;
+    replayAt(document.getElementById("replay"), samples.t[i].toFixed(1));
     document.getElementById("now").textContent = `${samples.t[i].toFixed(1)} s of ${samples.t[last].toFixed(1)} s, ${told.speed(i)}`;
     for (const [id, tell] of Object.entries(told)) {
       document.querySelector(`#${id} .now`).textContent = `· ${tell(i)}`;
@@ -54,13 +72,21 @@
   slider.addEventListener("input", () => show(Number(slider.value)));
   slider.closest(".moment").hidden = false;
 
+  // `basu index` tells its reports the way back to it
+  const index = new URLSearchParams(location.search).get("index");
+  if (index && /^(\.\.\/)*index\.html$/.test(index)) {
+    document.getElementById("all-runs").href = index;
+    document.getElementById("all-runs").hidden = false;
+  }
+
   function openNamed() {
-    const found = document.getElementById(location.hash.slice(1));
+    const named = document.getElementById(location.hash.slice(1));
+    const found = named?.tagName === "SECTION" ? named.querySelector(":scope > details") : named;
     if (!found || found.tagName !== "DETAILS") return;
-    found.open = true;
+    for (let each = found; each; each = each.parentElement.closest("details")) each.open = true;
     found.scrollIntoView({ block: "nearest" });
     found.querySelector("summary").focus({ preventScroll: true });
-    showTime(Number(found.dataset.t));
+    if (found.dataset.t) showTime(Number(found.dataset.t));
   }
   addEventListener("hashchange", openNamed);
   for (const link of document.querySelectorAll('a[href^="#"]')) {

@@ -68,13 +68,13 @@ def figures(value: Mapping[str, Any], keys: Sequence[str]) -> Element:
     return table(rows({key: value[key] for key in keys if key in value}))
 
 
-def cards(result: Result) -> list[Markup]:
-    """Return the card of each metric that has a template of its own."""
-    return [
-        render(f"templates/metrics/{metric.name}.j2", value=value, figures=figures)
+def cards(result: Result) -> dict[str, Markup]:
+    """Return the card of each metric that has a template of its own, by the metric's name."""
+    return {
+        metric.name: render(f"templates/metrics/{metric.name}.j2", value=value, figures=figures)
         for metric in built_in()
         if (value := result.metrics.get(metric.name)) and (CARDS / f"{metric.name}.j2").is_file()
-    ]
+    }
 
 
 def further(result: Result) -> list[tuple[str, str, bool]]:
@@ -89,6 +89,7 @@ def score_card(result: Result) -> Markup:
         return render("templates/score_card.j2", scores=None, success=result.success)
     counts = Counter(found.kind.value for found in result.infractions)
     scores, scoring = result.scores, result.scoring
+    shown = cards(result)
     return render(
         "templates/score_card.j2",
         scores=scores,
@@ -105,6 +106,7 @@ def score_card(result: Result) -> Markup:
         penalties=[
             (kind, events.symbol(kind), counts[kind], penalty) for kind, penalty in scoring["penalties"].items()
         ],
-        cards=cards(result),
+        passengers=shown.pop("passengers", None),
+        cards=list(shown.values()),
         further=further(result),
     )

@@ -74,8 +74,7 @@ def charts(history: History, felt: Signals, found: Sequence[MarkedEvent]) -> Ele
     """Return all charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
-        "section",
-        e("h2", "Plots"),
+        "div",
         _speed(felt, by_hand, _flags(f for f in found if f.factor is not None)),
         chart(
             felt.t_s,

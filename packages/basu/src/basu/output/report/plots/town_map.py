@@ -13,6 +13,7 @@ import numpy as np
 from basu.output.report import events
 from basu.output.report.plots.chart import ticks
 from basu.output.report.plots.decimate import path
+from basu.output.report.plots.street_names import Taken, placed_names
 from basu.output.report.streets import bounds_of, on_the_map
 from basu.output.report.templates import e, number, percent
 from basu.routing import ControlKind
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.output.report.events import MarkedEvent
-    from basu.output.report.streets import Bounds, Line
+    from basu.output.report.streets import Bounds, Line, Streets
     from basu.records.history import History
 
 TOLERANCE_M = 0.1  # which the paths may be off
@@ -33,7 +34,7 @@ CROWDED = 0.022  # marks nearer than this share of the map's larger side are sta
 STACKED_PX, SERVICE_PX = 22, 17
 
 
-def town_map(history: History, streets: Sequence[Line], found: Sequence[MarkedEvent]) -> Element:
+def town_map(history: History, streets: Streets, found: Sequence[MarkedEvent]) -> Element:
     """Return the whole map; its lines have ids, so that close-ups use them again."""
     bounds = bounds_of(history)
     frame = e("div", class_="map", id="map", style=box(bounds))
@@ -41,13 +42,14 @@ def town_map(history: History, streets: Sequence[Line], found: Sequence[MarkedEv
         e(
             "svg",
             e("title", "Map of the planned and the driven path"),
-            e("g", e("path", d=lines(streets), class_="streets"), id="map-streets"),
+            e("g", e("path", d=lines(streets.lines), class_="streets"), id="map-streets"),
             e("g", *paths(history), id="map-paths"),
             viewBox=view(bounds),
             role="img",
         )
     )
     plan, frames = history.facts.route.points_m, history.frames
+    frame.extend(_names(history, streets, found, bounds))
     frame.append(_word("A", float(plan[0, 0]), float(plan[0, 1]), bounds, "end", "A: where the plan begins"))
     frame.append(_word("B", float(plan[-1, 0]), float(plan[-1, 1]), bounds, "end", "B: where the plan ends"))
     frame.append(_word("", float(frames["x_m"][-1]), float(frames["y_m"][-1]), bounds, "last", "where the drive ended"))
@@ -118,6 +120,26 @@ def place(x_m: float, y_m: float, bounds: Bounds) -> str:
 def _word(text: str, x_m: float, y_m: float, bounds: Bounds, style: str, title: str, up_px: int = 0) -> Element:
     """Return a small label at a place, or so far above it."""
     return e("span", text, class_=f"at {style}", title=title, style=f"{place(x_m, y_m, bounds)};--up:{up_px}px")
+
+
+def _names(history: History, streets: Streets, found: Sequence[MarkedEvent], bounds: Bounds) -> list[Element]:
+    """Return the names of streets that have room beside all marks."""
+    route = history.facts.route
+    marks = [Taken(x_m, y_m, 0.0) for x_m, y_m in route.points_m[[0, -1], :2].tolist()]
+    for group, step_px in ((found, STACKED_PX), (route.stops, SERVICE_PX), (route.controls, 0)):
+        places = [(float(each.x_m), float(each.y_m)) for each in group]
+        marks += [Taken(*at, step_px * up) for at, up in zip(places, _stacked(places, bounds), strict=True)]
+    width_px = min(GREATEST_WIDTH_PX, GREATEST_HEIGHT_PX * bounds.width_m / bounds.height_m)
+    return [
+        e(
+            "span",
+            each.name,
+            class_="at street minor" if each.is_minor else "at street",
+            style=f"{place(each.x_m, each.y_m, bounds)};"
+            f"--turn:{number(each.angle_deg, 1)}deg;--beside:{each.beside_px:g}px",
+        )
+        for each in placed_names(streets, bounds, width_px, marks)
+    ]
 
 
 def _services(history: History, bounds: Bounds) -> list[Element]:

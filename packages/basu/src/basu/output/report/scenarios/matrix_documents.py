@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from basu.output.report.streets import Line
+    from basu.output.report.streets import Streets
     from basu.records.history import History
 
 
@@ -40,7 +40,7 @@ class CaseRecord:
     case: Mapping[str, Any]  # of its result
     result: Result | None  # None for a case that an earlier version wrote
     history: History | None  # None where nothing was driven
-    streets: list[Line]
+    streets: Streets
 
 
 def read_matrix(folder: Path) -> dict[str, Any]:

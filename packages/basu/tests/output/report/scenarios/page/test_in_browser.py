@@ -7,7 +7,7 @@ from playwright.sync_api import Browser, BrowserContext, Page
 
 from basu.output.report.scenarios.matrix_documents import CaseRecord
 from basu.output.report.scenarios.page.matrix_page import Cell, matrix_page
-from fakes.scenario_documents import STREETS, case_result, crossing, failed, matrix, told
+from fakes.scenario_documents import NAMED, case_result, crossing, failed, matrix, told
 
 CARD = "#case-pedestrian_crossing_2--basic"
 
@@ -21,7 +21,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
         verdict = cell.case["results"][cell.agent]["verdict"]
         document = case_result if verdict == "SUCCESS" else failed
         result = document(id=cell.case["id"], agent=cell.agent, verdict=verdict)
-        return CaseRecord(case=result, result=None, history=good if verdict == "SUCCESS" else bad, streets=STREETS)
+        return CaseRecord(case=result, result=None, history=good if verdict == "SUCCESS" else bad, streets=NAMED)
 
     matrix_ = matrix()
     matrix_["cases"][0]["results"]["basic"] = told("AGENT_FAULT", "x", "basic", 1.0)

@@ -13,7 +13,7 @@ from basu.output.report.scenarios.page import matrix_page as module
 from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, Cell, chosen, matrix_page, write_matrix_page
 from basu.output.report.streets import write_streets
 from basu.records.history.files import write_history
-from fakes.scenario_documents import STREETS, case, case_result, crossing, failed, matrix, matrix_of, sweep, told
+from fakes.scenario_documents import NAMED, case, case_result, crossing, failed, matrix, matrix_of, sweep, told
 
 GOOD, BAD = crossing(), crossing(brakes=False)
 
@@ -25,7 +25,7 @@ def left(cell: Cell) -> CaseRecord | str:
         return "It left no folder."
     document = case_result if verdict == "SUCCESS" else failed
     result = document(id=cell.case["id"], agent=cell.agent, scenario=cell.case["scenario"])
-    return CaseRecord(case=result, result=None, history=GOOD if verdict == "SUCCESS" else BAD, streets=STREETS)
+    return CaseRecord(case=result, result=None, history=GOOD if verdict == "SUCCESS" else BAD, streets=NAMED)
 
 
 def text_of(document: dict[str, Any]) -> str:
@@ -117,7 +117,7 @@ def test_it_is_written_from_the_folders_of_the_cases(tmp_path: Path) -> None:
     folder.mkdir(parents=True)
     write_json(folder / RESULT_FILE, {**case_result(id="dooring_1"), "schema_version": 2})
     write_history(folder, GOOD)
-    write_streets(folder, STREETS)
+    write_streets(folder, NAMED)
     write_matrix_page(tmp_path, document)
     page = (tmp_path / PAGE_FILE).read_text(encoding="utf-8")
     assert page.count('class="case-picture"') == 1

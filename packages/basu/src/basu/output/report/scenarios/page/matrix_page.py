@@ -125,7 +125,7 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dic
             made[number] = card(
                 found.case,
                 found.history,
-                found.streets,
+                found.streets.lines,
                 name=name_of(cell.case),
                 result=found.result,
                 picture=size < MOST_BYTES,
