@@ -19,7 +19,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SIDE = ROOT / "tests" / "rclpy_side"
 PLACE, REQUIREMENTS = ROOT / ".venv" / "rclpy", SIDE / "requirements.txt"
-DEFINITIONS = ROOT / "packages" / "basu-ros" / "src" / "basu_ros" / "definitions"
+DEFINITIONS = ROOT / "packages" / "linden-ros2" / "src" / "linden_ros2" / "definitions"
 OTHER_VERSION = (
     "ackermann_msgs/AckermannDrive.msg"  # with another name of its last field: the bytes fit, the meaning does not
 )

@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu_ros import frames
-from basu_ros.types import Generation
+from linden_ros2 import frames
+from linden_ros2.basic_messages import quaternion, vector3
+from linden_ros2.types import Generation
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from basu_ros.moment import Mount
-    from basu_ros.types import Types
+    from linden_ros2.mount import Mount
+    from linden_ros2.types import Types
 
 Part = tuple[str, Any]  # behind the sensor's topic, and a message
 
@@ -229,16 +230,6 @@ MARKINGS = {
     "BottsDots": 7, "Grass": 8, "Curb": 9, "NONE": 10,
 }  # fmt: skip
 """The value of each carla.LaneMarkingType by its name: road/element/LaneMarking.h of LibCarla 0.9.16."""
-
-
-def vector3(types: Types, xyz: frames.Vector, kind: str = "Vector3") -> Any:  # noqa: ANN401 - a message
-    """Return a geometry_msgs/Vector3, or a Point."""
-    return types.message(f"geometry_msgs/msg/{kind}", x=xyz[0], y=xyz[1], z=xyz[2])
-
-
-def quaternion(types: Types, turn: frames.Quaternion) -> Any:  # noqa: ANN401 - a message
-    """Return a geometry_msgs/Quaternion."""
-    return types.message("geometry_msgs/msg/Quaternion", x=turn[0], y=turn[1], z=turn[2], w=turn[3])
 
 
 _SENSORS: dict[str, Callable[[Types, Any, Any], Any]] = {
