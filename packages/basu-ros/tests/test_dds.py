@@ -103,9 +103,22 @@ def test_a_domain_that_is_none_is_a_sentence(text: str, monkeypatch: pytest.Monk
         domain_of_environment()
 
 
-def test_the_environment_may_keep_ros_on_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("ROS_LOCALHOST_ONLY", raising=False)
-    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
-    assert (domain_of_environment(), is_local()) == (0, False)
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    assert is_local()
+@pytest.mark.parametrize(
+    ("settings", "stays"),
+    [
+        ({}, True),
+        ({"ROS_LOCALHOST_ONLY": "1", "CYCLONEDDS_URI": "file:///a.xml"}, True),
+        ({"ROS_LOCALHOST_ONLY": "0"}, False),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, True),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, False),
+        ({"CYCLONEDDS_URI": "file:///a.xml"}, False),
+    ],
+)
+def test_ros_stays_on_this_machine_unless_a_variable_says_otherwise(
+    settings: dict[str, str], *, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_DOMAIN_ID", "CYCLONEDDS_URI"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in settings.items():
+        monkeypatch.setenv(name, value)
+    assert (domain_of_environment(), is_local()) == (0, stays)

@@ -43,11 +43,17 @@ def domain_of_environment() -> int:
 
 
 def is_local() -> bool:
-    """Return whether ROS is to stay on this machine, by ``ROS_LOCALHOST_ONLY`` or ``ROS_AUTOMATIC_DISCOVERY_RANGE``."""
-    return (
-        os.environ.get("ROS_LOCALHOST_ONLY", "").strip() == "1"
-        or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").strip().upper() == "LOCALHOST"
-    )
+    """Return whether ROS stays on this machine, as it does unless a variable says otherwise.
+
+    ``ROS_LOCALHOST_ONLY=0``, another ``ROS_AUTOMATIC_DISCOVERY_RANGE`` than ``LOCALHOST``, or settings of Cyclone DDS's
+    own open other networks.
+    """
+    only, reach = (os.environ.get(name, "").strip() for name in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"))
+    if only:
+        return only != "0"
+    if reach:
+        return reach.upper() == "LOCALHOST"
+    return not os.environ.get("CYCLONEDDS_URI", "").strip()
 
 
 def joined(domain: int) -> Any:  # noqa: ANN401 - of cyclonedds

@@ -76,6 +76,15 @@ class DdsNode:
                 self._same[topic.name] = SameType(self.types, topic.type, reader.get_matched_publication_data)
         self._enter()
 
+    def drop(self, *topics: Topic) -> None:
+        """Take back the readers and writers of topics."""
+        for topic in topics:
+            self._writers.pop(topic.name, None)
+            self._readers.pop(topic.name, None)
+            self._same.pop(topic.name, None)
+        self._waits = {}
+        self._enter()
+
     def publish(self, *messages: Message) -> None:
         """Publish messages on their topics."""
         for topic, content in messages:
