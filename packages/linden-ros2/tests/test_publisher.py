@@ -1,11 +1,13 @@
 """What a world publishes, with a node that keeps it: names, topics, frames, commands, and what is refused."""
 
 import logging
+import sys
 from types import SimpleNamespace as Fake
 from typing import Any
 
 import pytest
 
+from linden.cli import main
 from linden.errors import Refusal
 from linden.maps.library import MapLibrary
 from linden.protocol.values.actors import ActorDescription, AttributeValue
@@ -199,7 +201,7 @@ def test_bad_commands_are_refused_with_a_sentence(scene: Scene, caplog: pytest.L
     assert f"{DEPTH} or more commands came within a frame; only the newest counts (frame 4)" in said
 
 
-def test_two_vehicles_of_one_name_are_told_apart(scene: Scene, caplog: pytest.LogCaptureFixture) -> None:
+def test_of_two_vehicles_of_one_name_the_first_is_driven(scene: Scene, caplog: pytest.LogCaptureFixture) -> None:
     first = scene.spawn(CAR, ros_name="bus")
     second = scene.context.world.spawn(first.description, scene.context.world.spawn_points[1])
     with caplog.at_level(logging.WARNING):
@@ -214,3 +216,21 @@ def test_a_publisher_that_fails_leaves_the_server_running(scene: Scene, caplog: 
     with caplog.at_level(logging.WARNING):
         assert [scene.context.advance(), scene.context.advance()] == [1, 2]
     assert caplog.text.count("internal error in the publisher; the server goes on without it.") == 1
+
+
+def test_without_the_distribution_the_server_names_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "cyclonedds", None)
+    for name in [each for each in sys.modules if each.startswith("linden_ros2.")]:
+        monkeypatch.delitem(sys.modules, name)
+    assert main(["serve", "--port", "0", "--ros2"]) == 2
+    assert "--ros2 needs the package cyclonedds, which comes with: pip install linden-ros2" in capsys.readouterr().err
+
+
+def test_a_domain_that_is_none_ends_the_start(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "233")
+    assert main(["serve", "--port", "0", "--ros2"]) == 2
+    assert "--ros2: ROS_DOMAIN_ID is '233'; it must be a number from 0 to 232" in capsys.readouterr().err

@@ -76,7 +76,7 @@ class VehicleCommands:
             self._look()
 
     def _heard(self, topic: Topic) -> list[Any]:
-        """The commands that have come; those whose bytes are no message are left out."""
+        """The commands that have come; bytes that are no message are refused."""
         try:
             return self._node.received(topic)
         except Exception as error:  # noqa: BLE001 - rosbags raises errors of all kinds on foreign bytes
@@ -121,7 +121,7 @@ class VehicleCommands:
                 self._commanded.discard(topic)
                 self._warn(topic, "the last node that commanded has left; the vehicle keeps its last command")
             elif count > 1:
-                self._warn(topic, f"{count} nodes command; the newest command counts, whoever sent it")
+                self._warn(topic, f"{count} nodes command; the newest command counts")
 
     def _warn(self, topic: Topic, sentence: str) -> None:
         self._context.warn_once(f"{topic.name}: {sentence} (frame {self._context.world.frame + 1})")

@@ -8,15 +8,15 @@ if TYPE_CHECKING:
     from linden.simulation.actor_table import ActorRecord, ActorTable
 
 DRIVEN_ROLES = ("hero", "ego")
-"""The values of ``role_name`` whose vehicles CARLA lets ROS 2 drive: ActorDispatcher.cpp."""
+"""Roles of the vehicles that CARLA lets ROS 2 drive: ActorDispatcher.cpp."""
 
 
 def ros_name(actor: "ActorRecord") -> str:
     """Return the name of an actor.
 
     It is the attribute ``ros_name`` that a client has set; CARLA's default of it, the blueprint's id, counts as none.
-    Without one it is the role of a hero or ego vehicle, or the end of the blueprint's id with a number: the stream of
-    a sensor, the id of another actor. CARLA calls such a hero ``vehicle`` with its id.
+    Without one a hero or ego vehicle has its role. Other actors have the end of the blueprint's id with a number: a
+    sensor its stream, others their id. CARLA calls such a hero ``vehicle`` with its id.
     """
     given = given_name(actor)
     if given:

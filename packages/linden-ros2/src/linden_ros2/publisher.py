@@ -35,7 +35,7 @@ class Sensor(NamedTuple):
     mount: Mount
     frame: str
     parent_id: int
-    """The actor whose frame the transform is relative to; 0 is the map."""
+    """The actor that carries it; 0 without one."""
     topics: tuple[Topic, ...]
 
 
@@ -43,8 +43,8 @@ class WorldPublisher:
     """Publishes after each frame, and applies commands before it.
 
     Attributes:
-        streams: the sensors that are measured and published even without subscribers. Those that a client subscribes to
-            are published as well, as in CARLA.
+        streams: the sensors that are measured and published even without subscribers. As in CARLA, sensors
+            with subscribers are published as well.
     """
 
     def __init__(self, context: Context, node: DdsNode) -> None:

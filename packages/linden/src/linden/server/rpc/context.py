@@ -47,7 +47,7 @@ class SensorPublisher(Protocol):
     """What publishes measurements on ROS 2: ``linden_ros2.publisher``."""
 
     streams: set[int]
-    """Those that are measured in each frame even without subscribers."""
+    """Streams of sensors that are measured in each frame even without subscribers."""
 
     def enable(self, sensor: ActorRecord) -> None:
         """Publish a sensor also without subscribers.
