@@ -17,8 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu_ros.dds import Ros2Node
-from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu_ros.topics import Topic, moment_messages, vehicle_topics
+from basu_ros.moment import Control, Measurement, Moment, Motion, Vehicle
+from basu_ros.topics import moment_messages, vehicle_topics
+from linden_ros2.mount import Mount
+from linden_ros2.topic import Topic
 
 if TYPE_CHECKING:
     from collections.abc import Callable

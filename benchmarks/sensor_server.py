@@ -65,7 +65,7 @@ def measured(device: str, rows: tuple[Row, ...], vehicles: int, frame_count: int
         for number in range(WARM_UP + frame_count):
             wall_s, used_s = time.perf_counter(), time.process_time()
             simulation.step(row.step_s)
-            sent = sum(len(payload) for _, payload in frames.sensor_payloads(simulation, listened))
+            sent = sum(len(payload) for _, payload in frames.sensor_payloads(simulation, simulation.measure(listened)))
             if number >= WARM_UP:
                 wall_ms.append(1000.0 * (time.perf_counter() - wall_s))
                 used_ms.append(1000.0 * (time.process_time() - used_s))

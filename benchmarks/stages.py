@@ -54,7 +54,7 @@ def stages(maps: MapLibrary, count: int) -> dict[str, Callable[[], object]]:
         "walkers": lambda: episode.walkers.step(episode, 0.05),
         "rows": episode.observe,
         "snapshot": lambda: frames.world_payload(simulation),
-        "sensors": lambda: frames.sensor_payloads(simulation, set()),
+        "sensors": lambda: frames.sensor_payloads(simulation, simulation.measure(set())),
     }
 
 

@@ -9,7 +9,8 @@ import math
 import sys
 
 from basu_ros import autoware_ai, dds, ros1
-from basu_ros.topics import Message, Topic, ackermann_of, control_of, odometry_of, path_of
+from basu_ros.topics import odometry_of, path_of
+from linden_ros2.topic import Message, Topic, ackermann_of, control_of
 
 SPEED_MPS, AHEAD_M, WHEELBASE_M = 5.0, 6.0, 2.8
 KINEMATIC = Topic("/localization/kinematic_state", "nav_msgs/msg/Odometry")

@@ -8,6 +8,7 @@ import fcntl
 import hashlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -19,10 +20,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SIDE = ROOT / "tests" / "rclpy_side"
 PLACE, REQUIREMENTS = ROOT / ".venv" / "rclpy", SIDE / "requirements.txt"
-DEFINITIONS = ROOT / "packages" / "basu-ros" / "src" / "basu_ros" / "definitions"
+DEFINITIONS = ROOT / "packages" / "linden-ros2" / "src" / "linden_ros2" / "definitions"
 OTHER_VERSION = (
     "ackermann_msgs/AckermannDrive.msg"  # with another name of its last field: the bytes fit, the meaning does not
 )
+ENDS_S = 20.0
 Starts = Callable[..., "subprocess.Popen[str]"]
 
 
@@ -85,6 +87,15 @@ def rclpy_python() -> Path:
         pytest.skip(str(error))
 
 
+def ended(process: "subprocess.Popen[str]") -> None:
+    """End a node so that it takes its shared memory with it; kill one that does not end."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(ENDS_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+
+
 @pytest.fixture
 def rclpy_peer(rclpy_python: Path) -> Iterator[Starts]:
     """Starts nodes of rclpy, on the domain that the environment names, and ends them."""
@@ -103,7 +114,7 @@ def rclpy_peer(rclpy_python: Path) -> Iterator[Starts]:
                     text=True,
                 )
             )
-            stack.callback(process.kill)
+            stack.callback(ended, process)
             return process
 
         yield start

@@ -41,6 +41,7 @@ OPTIONAL = (
         "basu_truth",
         "basu_window",
         "linden_gym",
+        "linden_ros2",
         "linden_window",
         "websockets",
     ),

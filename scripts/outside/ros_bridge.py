@@ -32,16 +32,11 @@ import numpy as np
 
 from basu.records.motion import motion_of
 from basu_ros.agents.vehicle_source import control_of, info_message
-from basu_ros.moment import Actor, Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.moment import Actor, Light, Measurement, Moment, Motion, Vehicle
 from basu_ros.ros1 import Ros1Node
-from basu_ros.topics import (
-    LIGHTS,
-    Message,
-    Topic,
-    info_of,
-    moment_messages,
-    vehicle_topics,
-)
+from basu_ros.topics import LIGHTS, info_of, moment_messages, vehicle_topics
+from linden_ros2.mount import Mount
+from linden_ros2.topic import Message, Topic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,10 +13,10 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from basu_ros.dds import node_list_types
-from basu_ros.dds_domain import ONLY_HERE
-from basu_ros.dds_types import idl_structure
-from basu_ros.types import Generation, Types, types_of
+from linden_ros2.dds_domain import ONLY_HERE
+from linden_ros2.dds_node import node_list_types
+from linden_ros2.dds_types import idl_structure
+from linden_ros2.types import Generation, Types, types_of
 
 TYPES = types_of(Generation.ROS_2)
 LONGEST = duration(seconds=30)

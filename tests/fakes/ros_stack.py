@@ -7,7 +7,8 @@
 import sys
 
 from basu_ros import autoware_ai, dds, ros1
-from basu_ros.topics import CLOCK, Message, control_of, odometry_of
+from basu_ros.topics import odometry_of
+from linden_ros2.topic import CLOCK, Message, control_of
 
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0

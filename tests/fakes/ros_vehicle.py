@@ -4,8 +4,9 @@ from types import SimpleNamespace as Fake
 
 import numpy as np
 
-from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu_ros.topics import Topic
+from basu_ros.moment import Control, Measurement, Moment, Motion, Vehicle
+from linden_ros2.mount import Mount
+from linden_ros2.topic import Topic
 
 LIDAR = Mount("LIDAR", "sensor.lidar.ray_cast", 0.0, 0.0, 2.4)
 VEHICLE = Vehicle("hero", [LIDAR])

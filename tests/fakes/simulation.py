@@ -60,6 +60,10 @@ class FakeSimulation:
         self.delta_s = dt_s
         self.steps_s.append(dt_s)
 
+    def measure(self, listened: set[int]) -> list[int]:
+        """The one sensor stands for its measurement."""
+        return [stream_id for stream_id in listened if stream_id == 2]
+
     def has_stream(self, stream_id: int) -> bool:
         return stream_id < 1000
 
@@ -104,5 +108,5 @@ class FakeFrames:
         header = sensor_header(SensorType.WORLD_OBSERVER, simulation.frame, simulation.elapsed_s, Transform())
         return header + episode_header(simulation.episode_id, 0.0, simulation.delta_s) + self.padding
 
-    def sensor_payloads(self, simulation: FakeSimulation, listened: set[int]) -> list[tuple[int, bytes]]:
-        return [(2, bytes(self.sensor_bytes))] if self.sensor_bytes and 2 in listened else []
+    def sensor_payloads(self, simulation: FakeSimulation, measured: list[int]) -> list[tuple[int, bytes]]:
+        return [(stream, bytes(self.sensor_bytes)) for stream in measured if self.sensor_bytes]

@@ -1,4 +1,5 @@
-"""Nodes of real rclpy, in its environment: `peer.py hear`, `peer.py drive KIND`, `peer.py publish TOPIC TYPE`.
+"""Nodes of real rclpy, in its environment: `peer.py hear`, `peer.py drive KIND`, `peer.py publish TOPIC TYPE`,
+`peer.py count TOPIC TYPE NUMBER`, `peer.py command KIND`.
 
 `hear` reads a JSON list of topics from its standard input and prints what it heard as soon as every topic has spoken.
 """
@@ -6,9 +7,11 @@
 import importlib
 import json
 import sys
+import time
 
 import rclpy
 from nav_msgs.msg import Odometry
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
@@ -93,9 +96,50 @@ def publish(name: str, kind: str) -> None:
     rclpy.spin(node)
 
 
+def count(name: str, kind: str, number: str) -> None:
+    """Print the stamps in s of so many messages in a row, each with the frame of its header."""
+    node, heard = Node("counter"), []
+
+    def note(message: object) -> None:
+        stamp = message.clock if hasattr(message, "clock") else message.header.stamp
+        heard.append(stamp.sec + 1e-9 * stamp.nanosec)
+
+    node.create_subscription(class_of(kind), name, note, profile())
+    until_s = time.monotonic() + LONGEST_S
+    while len(heard) < int(number) and time.monotonic() < until_s:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    sys.stdout.write(json.dumps(heard) + "\n")
+    sys.stdout.flush()
+
+
+def command(kind: str) -> None:
+    """Command the vehicle `hero`: full throttle, what is no number, a flood, or an Ackermann command."""
+    node = Node("commander")
+    if kind == "ackermann":
+        message = class_of("ackermann_msgs/msg/AckermannDriveStamped")()
+        message.drive.speed, message.drive.acceleration, message.drive.steering_angle = 3.0, 2.0, 0.3
+        publisher = node.create_publisher(type(message), "/carla/hero/ackermann_control_cmd", profile())
+    else:
+        message = class_of("carla_msgs/msg/CarlaEgoVehicleControl")(throttle=0.75)
+        if kind == "nan":
+            message.throttle = float("nan")
+        is_reliable = kind != "best-effort"
+        topic = "/carla/hero/vehicle_control_cmd"
+        publisher = node.create_publisher(type(message), topic, profile(is_reliable=is_reliable))
+    period_s = 0.0005 if kind == "flood" else 0.02
+    node.create_timer(period_s, lambda: publisher.publish(message))
+    rclpy.spin(node)
+
+
 def main(role: str, *words: str) -> None:
     rclpy.init()
-    {"hear": hear, "drive": drive, "publish": publish}[role](*words)
+    roles = {"hear": hear, "drive": drive, "publish": publish, "count": count, "command": command}
+    try:
+        roles[role](*words)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()  # its shared memory goes with it
 
 
 if __name__ == "__main__":

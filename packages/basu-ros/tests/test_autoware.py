@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from basu_ros import autoware
-from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu_ros.types import Generation, types_of
+from basu_ros.moment import Control, Measurement, Moment, Motion, Vehicle
+from linden_ros2.mount import Mount
+from linden_ros2.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 TOP, SECOND = Mount("top", "sensor.lidar.ray_cast", 0.0, 0.0, 2.9), Mount("second", "sensor.lidar.ray_cast")

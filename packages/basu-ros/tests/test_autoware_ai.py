@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from basu_ros import autoware_ai as ai
-from basu_ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
-from basu_ros.topics import CLOCK, TF
-from basu_ros.types import Generation, Types, types_of
+from basu_ros.moment import Control, Measurement, Moment, Motion, Vehicle
+from linden_ros2.mount import Mount
+from linden_ros2.topic import CLOCK, TF
+from linden_ros2.types import Generation, Types, types_of
 
 NEW, OLD = types_of(Generation.ROS_1), ai.old_types()
 TOP, SECOND = Mount("top", "sensor.lidar.ray_cast", 0.5, 0.0, 2.9), Mount("second", "sensor.lidar.ray_cast")

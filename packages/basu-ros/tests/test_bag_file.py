@@ -11,7 +11,7 @@ from basu.errors import UserError
 from basu_ros.bag_file import BagFile
 from basu_ros.moment import Control, Moment, Motion, Vehicle
 from basu_ros.topics import TF_STATIC, first_messages, moment_messages, vehicle_topics
-from basu_ros.types import Generation
+from linden_ros2.types import Generation
 
 VEHICLE = Vehicle("hero")
 FRAMES = 5

@@ -10,9 +10,11 @@ from basu.errors import UserError
 from basu_ros.bag_file import BagFile
 from basu_ros.bag_track import read_track
 from basu_ros.moment import Control, Moment, Motion, Vehicle
-from basu_ros.topics import Message, Topic, control_of, odometry_of
-from basu_ros.types import Generation
-from basu_ros.vehicle_messages import control_message, header, odometry
+from basu_ros.topics import odometry_of
+from basu_ros.vehicle_messages import control_message, odometry
+from linden_ros2.basic_messages import header
+from linden_ros2.topic import Message, Topic, control_of
+from linden_ros2.types import Generation
 
 NOBODY = Control()
 

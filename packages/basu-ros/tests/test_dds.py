@@ -1,6 +1,5 @@
 """ROS 2 over real DDS on the loopback interface, with a peer in a process of its own."""
 
-import importlib
 import json
 import os
 import subprocess
@@ -11,21 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from basu.errors import UserError
 from basu_ros.dds import Ros2Node
-from basu_ros.dds_domain import domain_of_environment, is_local
-from basu_ros.dds_types import dds_name, dds_type
-from basu_ros.topics import (
-    TF_STATIC,
-    Topic,
-    control_of,
-    first_messages,
-    moment_messages,
-    odometry_of,
-    vehicle_topics,
-)
-from basu_ros.types import Generation, Types, types_of
+from basu_ros.topics import TF_STATIC, first_messages, moment_messages, odometry_of, vehicle_topics
 from fakes.ros_vehicle import CLOUD, VEHICLE, moment
+from linden_ros2.dds_domain import DdsError, domain_of_environment, is_local
+from linden_ros2.dds_types import dds_name, dds_type
+from linden_ros2.topic import Topic, control_of
+from linden_ros2.types import Generation, Types, types_of
 
 PEER = Path(__file__).parents[3] / "tests" / "fakes" / "plain_dds_peer.py"
 
@@ -108,22 +99,26 @@ def test_names_are_mangled_as_ros_2_does_it() -> None:
 @pytest.mark.parametrize("text", ["-1", "233", "one", "1.5"])
 def test_a_domain_that_is_none_is_a_sentence(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", text)
-    with pytest.raises(UserError, match=f"ROS_DOMAIN_ID is '{text}'; it must be a number from 0 to 232"):
+    with pytest.raises(DdsError, match=f"ROS_DOMAIN_ID is '{text}'; it must be a number from 0 to 232"):
         domain_of_environment()
 
 
-def test_the_environment_may_keep_ros_on_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("ROS_LOCALHOST_ONLY", raising=False)
-    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
-    assert (domain_of_environment(), is_local()) == (0, False)
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    assert is_local()
-
-
-@pytest.mark.parametrize("module", ["dds", "dds_domain", "dds_peers", "dds_types"])
-def test_without_the_wheel_there_is_a_sentence(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for part in ("core", "idl", "builtin"):
-        monkeypatch.setitem(sys.modules, f"cyclonedds.{part}", None)
-    monkeypatch.delitem(sys.modules, f"basu_ros.{module}")
-    with pytest.raises(UserError, match=r'pip install "basu-ros\[ros2\]"'):
-        importlib.import_module(f"basu_ros.{module}")
+@pytest.mark.parametrize(
+    ("settings", "stays"),
+    [
+        ({}, True),
+        ({"ROS_LOCALHOST_ONLY": "1", "CYCLONEDDS_URI": "file:///a.xml"}, True),
+        ({"ROS_LOCALHOST_ONLY": "0"}, False),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, True),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, False),
+        ({"CYCLONEDDS_URI": "file:///a.xml"}, False),
+    ],
+)
+def test_ros_stays_on_this_machine_unless_a_variable_says_otherwise(
+    settings: dict[str, str], *, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_DOMAIN_ID", "CYCLONEDDS_URI"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in settings.items():
+        monkeypatch.setenv(name, value)
+    assert (domain_of_environment(), is_local()) == (0, stays)

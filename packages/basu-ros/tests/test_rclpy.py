@@ -13,21 +13,12 @@ import pytest
 
 from basu_ros import autoware
 from basu_ros.dds import Ros2Node
-from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Vehicle
 from basu_ros.output.record_bag import event_topics
-from basu_ros.sensor_messages import SEMANTIC_ROW
-from basu_ros.topics import (
-    STATUS,
-    Message,
-    Topic,
-    ackermann_of,
-    first_messages,
-    info_of,
-    moment_messages,
-    path_message,
-    path_of,
-    vehicle_topics,
-)
+from basu_ros.topics import STATUS, first_messages, info_of, moment_messages, path_message, path_of, vehicle_topics
+from linden_ros2.mount import Mount
+from linden_ros2.sensor_messages import SEMANTIC_ROW
+from linden_ros2.topic import Message, Topic, ackermann_of
 from rclpy_environment import Starts, rclpy_peer, rclpy_python
 
 __all__ = ["rclpy_peer", "rclpy_python"]

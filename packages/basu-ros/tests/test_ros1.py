@@ -18,19 +18,10 @@ from basu_ros import rospy_start
 from basu_ros.autoware_ai import COMMAND, old_types
 from basu_ros.ros1 import Ros1Node
 from basu_ros.rospy_start import INSTALL, master_uri
-from basu_ros.topics import (
-    TF_STATIC,
-    Message,
-    Topic,
-    ackermann_of,
-    control_of,
-    first_messages,
-    moment_messages,
-    odometry_of,
-    vehicle_topics,
-)
-from basu_ros.types import Generation, Types, types_of
+from basu_ros.topics import TF_STATIC, first_messages, moment_messages, odometry_of, vehicle_topics
 from fakes.ros_vehicle import CLOUD, VEHICLE, moment
+from linden_ros2.topic import Message, Topic, ackermann_of, control_of
+from linden_ros2.types import Generation, Types, types_of
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 
 __all__ = ["master", "roscore", "starts"]

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu_ros import frames
 from basu_ros import vehicle_messages as of_vehicle
-from basu_ros.moment import Actor, Control, Light, Moment, Motion, Mount, Vehicle
+from basu_ros.moment import Actor, Control, Light, Moment, Motion, Vehicle
 from basu_ros.topics import first_messages, moment_messages, vehicle_topics
-from basu_ros.types import Generation, types_of
+from linden_ros2 import frames
+from linden_ros2.mount import Mount
+from linden_ros2.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 SOUTHWARD = Motion(10.0, 20.0, 1.0, 0.0, 0.0, math.pi / 2, 0.0, 5.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5)

@@ -27,7 +27,7 @@ from basu.records.history.files import read_history
 from basu_ros.autoware_ai import NDT_POSE
 from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import odometry_of
-from basu_ros.vehicle_messages import NS_PER_S
+from linden_ros2.basic_messages import NS_PER_S
 
 LAUNCH = Path(__file__).parents[3] / "docker" / "autoware" / "autoware_ai.launch"
 BASU = "import sys; from basu.cli import main; sys.exit(main(sys.argv[1:]))"

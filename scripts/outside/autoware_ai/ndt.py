@@ -31,9 +31,11 @@ from basu.errors import UserError
 from basu_ros import vehicle_messages as of_vehicle
 from basu_ros.autoware_ai import GNSS_POSE, NDT_POSE, POINTS, POSE
 from basu_ros.ros1 import Ros1Node
-from basu_ros.topics import CLOCK, TF_STATIC, Message, Topic, odometry_of
-from basu_ros.types import Generation, Types
-from basu_ros.vehicle_messages import NS_PER_S
+from basu_ros.topics import TF_STATIC, odometry_of
+from linden_ros2 import basic_messages as basic
+from linden_ros2.basic_messages import NS_PER_S
+from linden_ros2.topic import CLOCK, Message, Topic
+from linden_ros2.types import Generation, Types
 
 MAP_STAT = Topic("/pmap_stat", "std_msgs/msg/Bool")
 TIME = Topic("/time_ndt_matching", "std_msgs/msg/Float32", depth=10)
@@ -144,7 +146,7 @@ def matched(node: Ros1Node, scans: Iterator[Scan]) -> Iterator[Match]:
     """What NDT finds of each scan."""
     types = node.types
     for number, scan in enumerate(scans):
-        header = of_vehicle.header(types, scan.at_ns / NS_PER_S, of_vehicle.MAP)
+        header = basic.header(types, scan.at_ns / NS_PER_S, of_vehicle.MAP)
         if number == 0:
             node.publish(Message(GNSS_POSE, types.message(POSE, header=header, pose=copied(types, scan.pose))))
         node.publish(Message(POINTS, cloud_message(types, scan)))
@@ -179,7 +181,7 @@ def cloud_message(types: Types, scan: Scan) -> Any:
         types.message("sensor_msgs/msg/PointField", **{row: getattr(field, row) for row in rows})
         for field in scan.cloud.fields
     ]
-    header = of_vehicle.header(types, scan.at_ns / NS_PER_S, "velodyne")
+    header = basic.header(types, scan.at_ns / NS_PER_S, "velodyne")
     return types.message(POINTS.type, header=header, fields=fields, data=scan.cloud.data, **values)
 
 

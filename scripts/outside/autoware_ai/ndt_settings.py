@@ -1,7 +1,7 @@
 """Settings of voxel_grid_filter and ndt_matching that come by topics, as Autoware.AI's user interface sends them."""
 
-from basu_ros.topics import Message, Topic
-from basu_ros.types import Generation, Types
+from linden_ros2.topic import Message, Topic
+from linden_ros2.types import Generation, Types
 
 VOXEL = Topic("/config/voxel_grid_filter", "autoware_config_msgs/msg/ConfigVoxelGridFilter", is_latched=True, depth=1)
 MATCHING = Topic("/config/ndt", "autoware_config_msgs/msg/ConfigNDT", is_latched=True, depth=1)

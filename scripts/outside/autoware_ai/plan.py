@@ -26,13 +26,14 @@ from stack import Stack, running_stack
 
 from basu.routing import plan as joined
 from basu.routing.route_file import read_routes
-from basu_ros import frames
 from basu_ros import vehicle_messages as of_vehicle
 from basu_ros.autoware_ai import GOAL, INITIAL_POSE, still_messages
-from basu_ros.frames import Pose
 from basu_ros.moment import Vehicle
 from basu_ros.ros1 import Ros1Node
-from basu_ros.topics import Message, Topic
+from linden_ros2 import basic_messages as basic
+from linden_ros2 import frames
+from linden_ros2.frames import Pose
+from linden_ros2.topic import Message, Topic
 
 PATHS = Topic("/global_waypoints_rviz", "visualization_msgs/msg/MarkerArray")
 MAP_STAT = Topic("/vmap_stat", "std_msgs/msg/Bool")
@@ -129,7 +130,7 @@ def planned(stack: Stack, asian: Path, start: Place, goal: Place) -> list[tuple[
         node.publish(*still_messages(types, Vehicle("hero"), 0.0))  # the planner looks up map in world
         words = [f"_{name}:={value}" for name, value in PARAMETERS.items()]
         stack.node("op_global_planner", "__name:=op_global_planner", *words)
-        header = of_vehicle.header(types, 0.0, of_vehicle.MAP)
+        header = basic.header(types, 0.0, of_vehicle.MAP)
         covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=pose_message(types, start))
         node.publish(Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=header, pose=covered)))
         node.wait_for_peers(INITIAL_POSE, LONG_S)
@@ -155,7 +156,7 @@ def longest(markers: Any) -> list[tuple[float, float]]:
 def pose_message(types: Any, place: Place) -> Any:
     """A pose in ROS's axes."""
     turn = frames.attitude(0.0, 0.0, place.yaw_rad)
-    return of_vehicle.pose_message(types, Pose(frames.vector(*place[:3]), turn))
+    return basic.pose_message(types, Pose(frames.vector(*place[:3]), turn))
 
 
 def judged(carla_map: carla.Map, start: Place, goal: Place, points: list[tuple[float, float]]) -> dict[str, Any]:

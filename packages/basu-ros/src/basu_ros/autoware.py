@@ -9,17 +9,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu_ros import frames
 from basu_ros import vehicle_messages as of_vehicle
-from basu_ros.frames import Pose
-from basu_ros.sensor_messages import sensor_messages, vector3
-from basu_ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
+from basu_ros.topics import TF_STATIC
+from linden_ros2 import basic_messages as basic
+from linden_ros2 import frames
+from linden_ros2.basic_messages import vector3
+from linden_ros2.frames import Pose
+from linden_ros2.sensor_messages import sensor_messages
+from linden_ros2.topic import CLOCK, TF, Message, Topic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu_ros.moment import Moment, Mount, Vehicle
-    from basu_ros.types import Types
+    from basu_ros.moment import Moment, Vehicle
+    from linden_ros2.mount import Mount
+    from linden_ros2.types import Types
 
 DRIVE, REVERSE = 2, 20  # autoware_vehicle_msgs/GearReport
 AUTONOMOUS = 1  # autoware_vehicle_msgs/ControlModeReport
@@ -64,12 +68,12 @@ def all_topics(vehicle: Vehicle) -> list[Topic]:
 def mission(types: Types, way: list[tuple[float, float, float, float]]) -> list[Message]:
     """Return start, goal and the order to drive; ``way`` gives x, y, z in m and yaw in rad in CARLA's axes."""
     start, goal = (_pose(types, *way[index]) for index in (0, -1))
-    header = of_vehicle.header(types, 0.0, of_vehicle.MAP)
+    header = basic.header(types, 0.0, of_vehicle.MAP)
     covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=start)
     return [
         Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=header, pose=covered)),
         Message(GOAL, types.message(GOAL.type, header=header, pose=goal)),
-        Message(ENGAGE, types.message(ENGAGE.type, stamp=of_vehicle.stamp(types, 0.0), engage=True)),
+        Message(ENGAGE, types.message(ENGAGE.type, stamp=basic.stamp(types, 0.0), engage=True)),
     ]
 
 
@@ -79,13 +83,13 @@ def autoware_messages(types: Types, vehicle: Vehicle, moment: Moment, tyre_angle
     Of several sensors of a kind, Autoware's topic has the first one.
     """
     t_s, motion, behind_m = moment.t_s, moment.motion, vehicle.rear_axle_m
-    stamp = of_vehicle.stamp(types, t_s)
-    based = of_vehicle.header(types, t_s, of_vehicle.BASE)
+    stamp = basic.stamp(types, t_s)
+    based = basic.header(types, t_s, of_vehicle.BASE)
     moving = of_vehicle.twist(types, motion, behind_m)
-    yield Message(CLOCK, of_vehicle.clock(types, t_s))
-    yield Message(TF, of_vehicle.transforms(types, t_s, of_vehicle.moving_tree(vehicle, motion)))
+    yield Message(CLOCK, basic.clock(types, t_s))
+    yield Message(TF, basic.transforms(types, t_s, of_vehicle.moving_tree(vehicle, motion)))
     for mount, data in _first_of_each_topic(moment):
-        header = of_vehicle.header(types, t_s, of_vehicle.sensor_frame(vehicle, mount))
+        header = basic.header(types, t_s, of_vehicle.sensor_frame(vehicle, mount))
         parts = sensor_messages(types, header, mount, data)
         for topic, (_, content) in zip(sensor_topics(mount), parts, strict=True):
             yield Message(topic, content)
@@ -121,4 +125,4 @@ def _acceleration(types: Types, moment: Moment, header: Any) -> Any:  # noqa: AN
 
 
 def _pose(types: Types, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> Any:  # noqa: ANN401 - a message
-    return of_vehicle.pose_message(types, Pose(frames.vector(x_m, y_m, z_m), frames.attitude(0.0, 0.0, yaw_rad)))
+    return basic.pose_message(types, Pose(frames.vector(x_m, y_m, z_m), frames.attitude(0.0, 0.0, yaw_rad)))

@@ -9,17 +9,20 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu_ros import frames
 from basu_ros import vehicle_messages as of_vehicle
-from basu_ros.frames import Pose
-from basu_ros.sensor_messages import sensor_messages
-from basu_ros.topics import CLOCK, TF, TF_STATIC, Message, Topic
-from basu_ros.types import Generation, Types
+from basu_ros.topics import TF_STATIC
+from linden_ros2 import basic_messages as basic
+from linden_ros2 import frames
+from linden_ros2.frames import Pose
+from linden_ros2.sensor_messages import sensor_messages
+from linden_ros2.topic import CLOCK, TF, Message, Topic
+from linden_ros2.types import Generation, Types
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu_ros.moment import Moment, Mount, Vehicle
+    from basu_ros.moment import Moment, Vehicle
+    from linden_ros2.mount import Mount
 
 Place = tuple[float, float, float, float]
 """x, y, z in m and yaw in rad, in CARLA's axes."""
@@ -125,7 +128,7 @@ def still_messages(types: Types, vehicle: Vehicle, t_s: float) -> list[Message]:
         x_m, y_m, z_m = mount.pose.position_m
         moved = Pose((x_m + vehicle.rear_axle_m, y_m, z_m), mount.pose.attitude)
         tree.append((of_vehicle.BASE, sensor_frame(mount), moved))
-    return [Message(TF_STATIC, of_vehicle.transforms(types, t_s, tree))]
+    return [Message(TF_STATIC, basic.transforms(types, t_s, tree))]
 
 
 def mission(types: Types, goal: Place, t_s: float) -> list[Message]:
@@ -143,8 +146,8 @@ def initial_pose(types: Types, vehicle: Vehicle, moment: Moment) -> Message:
 def goal_message(types: Types, goal: Place, t_s: float) -> Message:
     """Return a goal."""
     x, y, z, yaw = goal
-    pose = of_vehicle.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
-    header = of_vehicle.header(types, t_s, of_vehicle.MAP)
+    pose = basic.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
+    header = basic.header(types, t_s, of_vehicle.MAP)
     return Message(GOAL, types.message(GOAL.type, header=header, pose=pose))
 
 
@@ -153,7 +156,7 @@ def sensing_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator
     mounts = _first_mounts(vehicle)
     for mount, data in moment.measured:
         if mount in mounts:
-            header = of_vehicle.header(types, moment.t_s, sensor_frame(mount))
+            header = basic.header(types, moment.t_s, sensor_frame(mount))
             parts = sensor_messages(types, header, mount, data)
             for topic, (_, content) in zip(sensor_topics(mount), parts, strict=True):
                 yield Message(topic, content)
@@ -163,9 +166,9 @@ def sensing_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator
 def localisation_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[Message]:
     """Yield pose, velocity and transform of base_link in the map: instead of the software's own localisation."""
     pose = frames.moved_back(moment.motion.pose, vehicle.rear_axle_m)
-    yield Message(TF, of_vehicle.transforms(types, moment.t_s, [(of_vehicle.MAP, of_vehicle.BASE, pose)]))
+    yield Message(TF, basic.transforms(types, moment.t_s, [(of_vehicle.MAP, of_vehicle.BASE, pose)]))
     moving = of_vehicle.twist(types, moment.motion, vehicle.rear_axle_m)
-    header = of_vehicle.header(types, moment.t_s, of_vehicle.BASE)
+    header = basic.header(types, moment.t_s, of_vehicle.BASE)
     yield Message(CURRENT_VELOCITY, types.message(VELOCITY, header=header, twist=moving))
     yield Message(CURRENT_POSE, _pose(types, vehicle, moment))
 
@@ -179,7 +182,7 @@ def status_message(types: Types, vehicle: Vehicle, moment: Moment, tyre_angle_ra
         gear: dict[str, Any] = {"gearshift": OLD_REVERSE if is_back else OLD_DRIVE}
     else:
         gear = {"current_gear": types.message("autoware_msgs/msg/Gear", gear=REVERSE if is_back else DRIVE)}
-    header = of_vehicle.header(types, moment.t_s, of_vehicle.BASE)
+    header = basic.header(types, moment.t_s, of_vehicle.BASE)
     values = {"speed": moving.linear.x * MPS_TO_KMPH, "angle": tyre_angle_rad, "drivemode": AUTO, "steeringmode": AUTO}
     return Message(STATUS, types.message(STATUS.type, header=header, **values, **gear))
 
@@ -212,5 +215,5 @@ def _first_mounts(vehicle: Vehicle) -> list[Mount]:
 
 def _pose(types: Types, vehicle: Vehicle, moment: Moment) -> Any:  # noqa: ANN401 - a message
     """The pose of base_link in the map."""
-    pose = of_vehicle.pose_message(types, frames.moved_back(moment.motion.pose, vehicle.rear_axle_m))
-    return types.message(POSE, header=of_vehicle.header(types, moment.t_s, of_vehicle.MAP), pose=pose)
+    pose = basic.pose_message(types, frames.moved_back(moment.motion.pose, vehicle.rear_axle_m))
+    return types.message(POSE, header=basic.header(types, moment.t_s, of_vehicle.MAP), pose=pose)

@@ -10,14 +10,14 @@ from rosbags import interfaces as i
 from rosbags import rosbag1, rosbag2
 
 from basu.errors import UserError
-from basu_ros.types import Generation, types_of
-from basu_ros.vehicle_messages import nanoseconds
+from linden_ros2.basic_messages import nanoseconds
+from linden_ros2.types import Generation, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from basu_ros.topics import Message, Topic
+    from linden_ros2.topic import Message, Topic
 
 VERSION: Final = 8  # of rosbag2's metadata: QoS as text, which Humble, Iron and Jazzy read
 FOREVER = (9223372036, 854775807)  # rosbag2's infinite duration, s and ns

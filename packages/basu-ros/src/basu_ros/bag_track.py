@@ -11,8 +11,8 @@ from rosbags.rosbag1 import ReaderError as Error1
 from rosbags.rosbag2 import ReaderError as Error2
 
 from basu.errors import UserError
-from basu_ros import frames
-from basu_ros.types import Generation, types_of
+from linden_ros2 import frames
+from linden_ros2.types import Generation, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.records.motion import VehicleMotion
-from basu_ros import frames
-from basu_ros.frames import Pose
+from linden_ros2 import frames
+from linden_ros2.frames import Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from basu_ros.frames import Vector
+    from linden_ros2.frames import Vector
+    from linden_ros2.mount import Mount
 
 
 class Motion(VehicleMotion):
@@ -65,31 +66,6 @@ class Actor(NamedTuple):
     velocity_y_mps: float
     half_length_m: float
     half_width_m: float
-
-
-class Mount(NamedTuple):
-    """A sensor on a vehicle: its place in the vehicle's frame, CARLA's axes, m and rad."""
-
-    id: str
-    type_id: str
-    x_m: float = 0.0
-    y_m: float = 0.0
-    z_m: float = 0.0
-    roll_rad: float = 0.0
-    pitch_rad: float = 0.0
-    yaw_rad: float = 0.0
-    attributes: Mapping[str, str] = {}
-
-    @property
-    def is_camera(self) -> bool:
-        """Whether it makes pictures; its frame in ROS is an optical one."""
-        return self.type_id.startswith("sensor.camera.")
-
-    @property
-    def pose(self) -> Pose:
-        """The pose of its frame in the vehicle's, in ROS's axes; that of a camera is optical."""
-        turn = frames.attitude(self.roll_rad, self.pitch_rad, self.yaw_rad)
-        return Pose(frames.vector(*self[2:5]), frames.times(turn, frames.OPTICAL) if self.is_camera else turn)
 
 
 class Measurement(NamedTuple):

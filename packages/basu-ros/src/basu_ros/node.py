@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu_ros.topics import Message, Topic
-    from basu_ros.types import Types
+    from linden_ros2.topic import Message, Topic
+    from linden_ros2.types import Types
 
 
 class RosNode(Protocol):

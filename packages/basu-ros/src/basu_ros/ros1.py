@@ -31,13 +31,13 @@ from basu_ros.rospy_process import (
     WARNING,
 )
 from basu_ros.rospy_start import master_uri, refusal, started
-from basu_ros.types import Generation, Types, types_of
+from linden_ros2.types import Generation, Types, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import IO
 
-    from basu_ros.topics import Message, Topic
+    from linden_ros2.topic import Message, Topic
 
 START_S, CLOSE_S, ANSWER_S = 30.0, 5.0, 10.0
 MD5_BYTES = 32

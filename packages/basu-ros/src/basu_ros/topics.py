@@ -2,43 +2,23 @@
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from basu.errors import UserError
-from basu_ros import frames
 from basu_ros import vehicle_messages as of_vehicle
-from basu_ros.frames import Pose
-from basu_ros.sensor_messages import sensor_messages, sensor_types
+from linden_ros2 import basic_messages as basic
+from linden_ros2 import frames
+from linden_ros2.frames import Pose
+from linden_ros2.sensor_messages import sensor_messages, sensor_types
+from linden_ros2.topic import CLOCK, NAME, TF, Message, Topic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from basu_ros.moment import Moment, Vehicle
-    from basu_ros.types import Types
-
-NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # of a part of a topic's name: design.ros2.org, topic and service names
+    from linden_ros2.types import Types
 
 
-class Topic(NamedTuple):
-    """A topic: its name with a slash, its type, whether a late subscriber gets the last message, and the delivery."""
-
-    name: str
-    type: str
-    is_latched: bool = False
-    is_reliable: bool = True
-    depth: int = 10  # messages that a writer or reader keeps; the ros-bridge has 10
-
-
-class Message(NamedTuple):
-    """A message for a topic."""
-
-    topic: Topic
-    content: Any  # a message of `Types`
-
-
-CLOCK = Topic("/clock", "rosgraph_msgs/msg/Clock")
-TF = Topic("/tf", "tf2_msgs/msg/TFMessage", depth=100)
 TF_STATIC = Topic("/tf_static", "tf2_msgs/msg/TFMessage", is_latched=True, depth=1)
 STATUS = Topic("/carla/status", "carla_msgs/msg/CarlaStatus")
 LIGHTS = Topic("/carla/traffic_lights/status", "carla_msgs/msg/CarlaTrafficLightStatusList")
@@ -59,16 +39,6 @@ def objects_of(role: str) -> Topic:
     return Topic(f"/carla/{role}/objects", "derived_object_msgs/msg/ObjectArray")
 
 
-def control_of(role: str) -> Topic:
-    """Return the topic of commands to a vehicle as CARLA has them."""
-    return Topic(f"/carla/{role}/vehicle_control_cmd", "carla_msgs/msg/CarlaEgoVehicleControl")
-
-
-def ackermann_of(role: str) -> Topic:
-    """Return the topic of Ackermann commands to a vehicle."""
-    return Topic(f"/carla/{role}/ackermann_cmd", "ackermann_msgs/msg/AckermannDrive")
-
-
 def info_of(role: str) -> Topic:
     """Return the topic of what does not change about a vehicle: wheels, engine, mass."""
     return Topic(f"/carla/{role}/vehicle_info", "carla_msgs/msg/CarlaEgoVehicleInfo", is_latched=True, depth=1)
@@ -81,9 +51,9 @@ def path_of(role: str) -> Topic:
 
 def path_message(types: Types, role: str, way: list[tuple[float, float, float, float]]) -> Message:
     """Return a route for its topic; ``way`` gives x, y, z in m and yaw in rad of each point, in CARLA's axes."""
-    header = of_vehicle.header(types, 0.0, of_vehicle.MAP)
+    header = basic.header(types, 0.0, of_vehicle.MAP)
     poses = [
-        types.message("geometry_msgs/msg/PoseStamped", header=header, pose=of_vehicle.pose_message(types, pose))
+        types.message("geometry_msgs/msg/PoseStamped", header=header, pose=basic.pose_message(types, pose))
         for pose in (Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)) for x, y, z, yaw in way)
     ]
     return Message(path_of(role), types.message("nav_msgs/msg/Path", header=header, poses=poses))
@@ -112,14 +82,14 @@ def vehicle_topics(vehicle: Vehicle) -> list[Topic]:
 
 def first_messages(types: Types, vehicle: Vehicle, t_s: float) -> list[Message]:
     """Return what is published once: the transforms that never change."""
-    return [Message(TF_STATIC, of_vehicle.transforms(types, t_s, of_vehicle.still_tree(vehicle)))]
+    return [Message(TF_STATIC, basic.transforms(types, t_s, of_vehicle.still_tree(vehicle)))]
 
 
 def moment_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[Message]:
     """Yield the messages of one frame: the clock first, then the vehicle, then each sensor that measured in it."""
     role, t_s = vehicle.role, moment.t_s
-    yield Message(CLOCK, of_vehicle.clock(types, t_s))
-    yield Message(TF, of_vehicle.transforms(types, t_s, of_vehicle.moving_tree(vehicle, moment.motion)))
+    yield Message(CLOCK, basic.clock(types, t_s))
+    yield Message(TF, basic.transforms(types, t_s, of_vehicle.moving_tree(vehicle, moment.motion)))
     yield Message(STATUS, of_vehicle.simulator_status(types, moment, vehicle.step_s))
     child = of_vehicle.BASE if vehicle.rear_axle_m else role
     yield Message(odometry_of(role), of_vehicle.odometry(types, vehicle, moment, child))
@@ -128,7 +98,7 @@ def moment_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[
     if moment.lights:
         yield Message(LIGHTS, of_vehicle.lights(types, tuple(moment.lights)))
     for mount, data in moment.measured:
-        header = of_vehicle.header(types, t_s, of_vehicle.sensor_frame(vehicle, mount))
+        header = basic.header(types, t_s, of_vehicle.sensor_frame(vehicle, mount))
         for (suffix, kind), (_, content) in zip(
             sensor_types(mount.type_id), sensor_messages(types, header, mount, data), strict=True
         ):

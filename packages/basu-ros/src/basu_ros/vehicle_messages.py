@@ -1,4 +1,4 @@
-"""Messages of a vehicle as the ros-bridge has them: clock, transforms, odometry, status, other actors, lights."""
+"""Messages of a vehicle as the ros-bridge has them: trees of transforms, odometry, status, other actors, lights."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu_ros import frames
-from basu_ros.frames import Pose
-from basu_ros.sensor_messages import quaternion, vector3
+from linden_ros2 import basic_messages as basic
+from linden_ros2 import frames
+from linden_ros2.basic_messages import quaternion, vector3
+from linden_ros2.frames import Pose
 
 if TYPE_CHECKING:
-    from basu_ros.moment import Actor, Control, Light, Moment, Motion, Mount, Vehicle
-    from basu_ros.types import Types
+    from basu_ros.moment import Actor, Control, Light, Moment, Motion, Vehicle
+    from linden_ros2.mount import Mount
+    from linden_ros2.types import Types
 
 MAP, ODOM, BASE = "map", "odom", "base_link"
-NS_PER_S = 1_000_000_000
 BOX = 1  # shape_msgs/SolidPrimitive
 UNKNOWN, PEDESTRIAN, BIKE, CAR, TRUCK, MOTORCYCLE, BARRIER = 0, 4, 5, 6, 7, 8, 10  # derived_object_msgs/Object
 CERTAIN, TRACKED = 255, 1
@@ -25,54 +26,6 @@ LIGHT_UNKNOWN = 4
 BIKES = ("crossbike", "omafiets", "century")
 MOTORCYCLES = ("harley", "ninja", "zx125", "yzf")
 TRUCKS = ("carlacola", "firetruck", "ambulance", "european_hgv", "truck", "sprinter", "fusorosa")
-
-
-def nanoseconds(t_s: float) -> int:
-    """Return a simulated time in ns; CARLA's sums of steps are rounded to the microsecond."""
-    return round(t_s * 1e6) * 1000
-
-
-def stamp(types: Types, t_s: float) -> Any:  # noqa: ANN401 - a message
-    """Return a time."""
-    sec, nanosec = divmod(nanoseconds(t_s), NS_PER_S)
-    return types.message("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
-
-
-def header(types: Types, t_s: float, frame: str) -> Any:  # noqa: ANN401 - a message
-    """Return a header: the simulated time and the frame."""
-    return types.message("std_msgs/msg/Header", stamp=stamp(types, t_s), frame_id=frame)
-
-
-def clock(types: Types, t_s: float) -> Any:  # noqa: ANN401 - a message
-    """Return the simulated time as a message of /clock."""
-    return types.message("rosgraph_msgs/msg/Clock", clock=stamp(types, t_s))
-
-
-def pose_message(types: Types, pose: Pose) -> Any:  # noqa: ANN401 - a message
-    """Return a geometry_msgs/Pose."""
-    return types.message(
-        "geometry_msgs/msg/Pose",
-        position=vector3(types, pose.position_m, "Point"),
-        orientation=quaternion(types, pose.attitude),
-    )
-
-
-def transforms(types: Types, t_s: float, tree: list[tuple[str, str, Pose]]) -> Any:  # noqa: ANN401 - a message
-    """Return transforms, each of a parent, a child and the child's pose in the parent."""
-    rows = [
-        types.message(
-            "geometry_msgs/msg/TransformStamped",
-            header=header(types, t_s, parent),
-            child_frame_id=child,
-            transform=types.message(
-                "geometry_msgs/msg/Transform",
-                translation=vector3(types, pose.position_m),
-                rotation=quaternion(types, pose.attitude),
-            ),
-        )
-        for parent, child, pose in tree
-    ]
-    return types.message("tf2_msgs/msg/TFMessage", transforms=rows)
 
 
 def still_tree(vehicle: Vehicle) -> list[tuple[str, str, Pose]]:
@@ -104,10 +57,10 @@ def twist(types: Types, motion: Motion, rear_axle_m: float = 0.0) -> Any:  # noq
 def odometry(types: Types, vehicle: Vehicle, moment: Moment, child: str) -> Any:  # noqa: ANN401 - a message
     """Return the pose in the map, and the velocities in the axes of ``child``: base_link, or the vehicle's frame."""
     behind_m = vehicle.rear_axle_m
-    pose = pose_message(types, frames.moved_back(moment.motion.pose, behind_m))
+    pose = basic.pose_message(types, frames.moved_back(moment.motion.pose, behind_m))
     return types.message(
         "nav_msgs/msg/Odometry",
-        header=header(types, moment.t_s, MAP),
+        header=basic.header(types, moment.t_s, MAP),
         child_frame_id=child,
         pose=types.message("geometry_msgs/msg/PoseWithCovariance", pose=pose),
         twist=types.message("geometry_msgs/msg/TwistWithCovariance", twist=twist(types, moment.motion, behind_m)),
@@ -116,7 +69,9 @@ def odometry(types: Types, vehicle: Vehicle, moment: Moment, child: str) -> Any:
 
 def control_message(types: Types, control: Control, t_s: float = 0.0) -> Any:  # noqa: ANN401 - a message
     """Return a control as CARLA has it: steer is positive to the right."""
-    return types.message("carla_msgs/msg/CarlaEgoVehicleControl", header=header(types, t_s, ""), **control._asdict())
+    return types.message(
+        "carla_msgs/msg/CarlaEgoVehicleControl", header=basic.header(types, t_s, ""), **control._asdict()
+    )
 
 
 def status(types: Types, moment: Moment) -> Any:  # noqa: ANN401 - a message
@@ -124,7 +79,7 @@ def status(types: Types, moment: Moment) -> Any:  # noqa: ANN401 - a message
     motion = moment.motion
     return types.message(
         "carla_msgs/msg/CarlaEgoVehicleStatus",
-        header=header(types, moment.t_s, MAP),
+        header=basic.header(types, moment.t_s, MAP),
         velocity=math.hypot(*motion.velocity_mps),
         acceleration=types.message("geometry_msgs/msg/Accel", linear=vector3(types, motion.acceleration_mps2)),
         orientation=quaternion(types, motion.pose.attitude),
@@ -160,7 +115,7 @@ def objects(types: Types, t_s: float, others: tuple[Actor, ...]) -> Any:  # noqa
     """Return the other actors with boxes and velocities in the map; heights of boxes are not recorded and stay 0."""
     return types.message(
         "derived_object_msgs/msg/ObjectArray",
-        header=header(types, t_s, MAP),
+        header=basic.header(types, t_s, MAP),
         objects=[_object(types, t_s, actor) for actor in others],
     )
 
@@ -172,11 +127,11 @@ def _object(types: Types, t_s: float, actor: Actor) -> Any:  # noqa: ANN401 - a 
     kind = classification(actor.type_id)
     return types.message(
         "derived_object_msgs/msg/Object",
-        header=header(types, t_s, MAP),
+        header=basic.header(types, t_s, MAP),
         id=actor.id,
         detection_level=TRACKED,
         object_classified=kind != UNKNOWN,
-        pose=pose_message(types, pose),
+        pose=basic.pose_message(types, pose),
         twist=types.message("geometry_msgs/msg/Twist", linear=vector3(types, velocity)),
         shape=types.message("shape_msgs/msg/SolidPrimitive", type=BOX, dimensions=size),
         classification=kind,

@@ -16,7 +16,7 @@ from basu_ros.agents.commands import (
     carla_command,
 )
 from basu_ros.agents.lockstep import is_answer
-from basu_ros.types import Generation, types_of
+from linden_ros2.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
 FACTS = VehicleFacts(

@@ -13,11 +13,11 @@ from basu.records.history.files import read_history, write_history
 from basu_ros.bag_track import read_track
 from basu_ros.output.record_bag import write_record
 from basu_ros.output.track_record import Shape, record_of
-from basu_ros.types import Generation
 from fakes.drives import VEHICLE, hit
 from fakes.one_road import one_road
 from fakes.rides import braked, eastward, ride
 from fakes.run_records import crashing
+from linden_ros2.types import Generation
 
 SHAPE = Shape(VEHICLE.front_m, VEHICLE.rear_m, VEHICLE.width_m)
 

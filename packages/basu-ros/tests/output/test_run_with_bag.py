@@ -16,8 +16,9 @@ from basu.records.history.files import read_history
 from basu_ros.bag_file import BagFile
 from basu_ros.dds import Ros2Node
 from basu_ros.output.record_bag import write_record
-from basu_ros.topics import TF_STATIC, Message, Topic, odometry_of, path_of
-from basu_ros.types import Generation
+from basu_ros.topics import TF_STATIC, odometry_of, path_of
+from linden_ros2.topic import Message, Topic
+from linden_ros2.types import Generation
 from servers import RunningServer
 
 AGENT = """

@@ -4,6 +4,7 @@ import importlib.util
 import logging
 from typing import TYPE_CHECKING
 
+from linden.server.rpc.context import Follower
 from linden_window.control import carry_out
 from linden_window.link import PageLink, StartingLink
 from linden_window.observer import WorldObserver
@@ -41,7 +42,7 @@ class AttachedWindow:
                     link.note({"type": "says", "text": answer})
             return link.is_open
 
-        server.show(link.fileno(), observer.after_frame, read)
+        server.follow(Follower("window", lambda _measured: observer.after_frame()), link.fileno(), read)
         observer.after_frame()  # the map, so that its scene is ready before the first page
         return link.address
 

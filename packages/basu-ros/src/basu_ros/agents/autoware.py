@@ -9,14 +9,15 @@ from basu_ros.agents.autoware_base import AutowareBase
 from basu_ros.agents.commands import REVERSE, Wanted, autoware_command
 from basu_ros.agents.lockstep import NODE
 from basu_ros.dds import Ros2Node
-from basu_ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
+from basu_ros.topics import TF_STATIC, first_messages, path_message, path_of
+from linden_ros2.topic import Message
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu_ros.moment import Moment
     from basu_ros.node import RosNode
-    from basu_ros.topics import Topic
+    from linden_ros2.topic import Topic
 
 
 class AutowareAgent(AutowareBase):

@@ -23,14 +23,16 @@ from basu_ros.agents.legs import Legs
 from basu_ros.agents.lockstep import NODE, is_answer
 from basu_ros.agents.ros1 import FIRST_S
 from basu_ros.ros1 import Ros1Node
-from basu_ros.topics import CLOCK, Message, odometry_of, path_message, path_of
+from basu_ros.topics import odometry_of, path_message, path_of
+from linden_ros2 import basic_messages as basic
+from linden_ros2.topic import CLOCK, Message
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu_ros.moment import Moment
-    from basu_ros.topics import Topic
-    from basu_ros.types import Types
+    from linden_ros2.topic import Topic
+    from linden_ros2.types import Types
 
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it
@@ -111,7 +113,7 @@ class AutowareAiAgent(AutowareBase):
             sent.append(ai.goal_message(types, self.way()[goal], moment.t_s))
         if not self._localises_itself:
             sent.extend(ai.localisation_messages(types, vehicle, moment))
-        return [*sent, Message(CLOCK, of_vehicle.clock(types, moment.t_s))]
+        return [*sent, Message(CLOCK, basic.clock(types, moment.t_s))]
 
     def belongs(self, message: Any, moment: Moment) -> bool:  # noqa: ANN401 - a message
         """Return whether a command answers a frame at once; an older one is kept for the end of the frame."""
@@ -129,7 +131,7 @@ class AutowareAiAgent(AutowareBase):
         if not self._is_over:
             self._tick += 1
             t_s = moment.t_s + self._tick * TICK_S
-            self.node.publish(Message(CLOCK, of_vehicle.clock(self.node.types, t_s)))
+            self.node.publish(Message(CLOCK, basic.clock(self.node.types, t_s)))
             return None
         now_s = time.monotonic()
         if self._latest is not None and is_answer(self._latest, moment.t_s - HELD_S):

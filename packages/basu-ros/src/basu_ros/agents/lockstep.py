@@ -21,19 +21,10 @@ from basu.files import find
 from basu_ros.agents.commands import AckermannControl, Wanted, ackermann_command, carla_command
 from basu_ros.agents.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
 from basu_ros.moment import Vehicle
-from basu_ros.topics import (
-    Message,
-    Topic,
-    ackermann_of,
-    first_messages,
-    moment_messages,
-    objects_of,
-    path_message,
-    path_of,
-    vehicle_topics,
-)
-from basu_ros.topics import control_of as control_topic
-from basu_ros.vehicle_messages import nanoseconds
+from basu_ros.topics import first_messages, moment_messages, objects_of, path_message, path_of, vehicle_topics
+from linden_ros2.basic_messages import nanoseconds
+from linden_ros2.topic import Message, Topic, ackermann_of
+from linden_ros2.topic import control_of as control_topic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

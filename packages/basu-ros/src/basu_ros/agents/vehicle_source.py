@@ -9,10 +9,12 @@ import numpy as np
 
 from basu.agents.sight.actors import ActorKind
 from basu.records.motion import motion_of
-from basu_ros.frames import vector
-from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
-from basu_ros.sensor_messages import vector3
-from basu_ros.topics import Message, info_of
+from basu_ros.moment import Actor, Control, Light, Measurement, Moment, Motion
+from basu_ros.topics import info_of
+from linden_ros2.basic_messages import vector3
+from linden_ros2.frames import vector
+from linden_ros2.mount import Mount
+from linden_ros2.topic import Message
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sight import Other
-    from basu_ros.types import Types
+    from linden_ros2.types import Types
 
 TYPE_OF_KIND = {ActorKind.VEHICLE: "vehicle.", ActorKind.WALKER: "walker.", ActorKind.PROP: "static.prop."}
 """The beginning of a blueprint's id, which is all that an agent sees of it."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from basu.errors import UserError
 from basu.records.history.files import read_history
 from basu_ros.output.record_bag import write_record
-from basu_ros.types import Generation
+from linden_ros2.types import Generation
 
 
 def run(arguments: argparse.Namespace) -> int:

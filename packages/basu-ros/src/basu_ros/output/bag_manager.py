@@ -11,9 +11,9 @@ from basu_ros.agents.vehicle_source import control_of, info_message
 from basu_ros.bag_file import BagFile
 from basu_ros.output.live_vehicle import LiveVehicle
 from basu_ros.output.record_bag import command_message, event_messages, event_topics
-from basu_ros.topics import control_of as control_topic
 from basu_ros.topics import first_messages, moment_messages, vehicle_topics
-from basu_ros.types import Generation
+from linden_ros2.topic import control_of as control_topic
+from linden_ros2.types import Generation
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from basu_ros import vehicle_messages as of_vehicle
 from basu_ros.bag_file import BagFile
 from basu_ros.moment import Actor, Control, Moment, Motion, Vehicle
-from basu_ros.sensor_messages import MARKINGS, collision_message, lane_invasion_message
-from basu_ros.topics import Message, Topic, control_of, first_messages, moment_messages, vehicle_topics
+from basu_ros.topics import first_messages, moment_messages, vehicle_topics
+from linden_ros2 import basic_messages as basic
+from linden_ros2.sensor_messages import MARKINGS, collision_message, lane_invasion_message
+from linden_ros2.topic import Message, Topic, control_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from basu.records.history import History
-    from basu_ros.types import Generation, Types
+    from linden_ros2.types import Generation, Types
 
 ROLE = "hero"  # of the vehicle under test, as `basu.episode.world` calls it
 BRAKED = Control(brake=1.0)  # what the vehicle has before its first control
@@ -75,12 +77,12 @@ def event_messages(types: Types, role: str, history: History) -> Iterator[tuple[
     step_s = history.facts.step_s
     for contact in history.collisions:
         t_s = contact.tick * step_s
-        header = of_vehicle.header(types, t_s, of_vehicle.MAP)
+        header = basic.header(types, t_s, of_vehicle.MAP)
         yield t_s, Message(collisions, collision_message(types, header, contact.other_id, contact.impulse_ns))
     for crossing in history.lane_invasions:
         t_s = crossing.tick * step_s
         kinds = [MARKINGS.get(marking.partition("/")[0], 0) for marking in crossing.markings]
-        header = of_vehicle.header(types, t_s, role)
+        header = basic.header(types, t_s, role)
         yield t_s, Message(invasions, lane_invasion_message(types, header, kinds))
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.extras import require
-from basu_ros.extras import CYCLONEDDS
+from basu_ros.dds import Ros2Node
 from basu_ros.output.bag_manager import BagManager
 from basu_ros.output.publish_manager import PublishManager
 from basu_ros.ros1 import Ros1Node, require_roscore
-from basu_ros.types import Generation
+from linden_ros2.types import Generation
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import BaseManager
@@ -18,13 +17,11 @@ if TYPE_CHECKING:
 
 
 def check(options: DriveOptions) -> None:
-    """Check that DDS is installed for ``--ros2``, and that a roscore answers for ``--ros1``.
+    """Check that a roscore answers for ``--ros1``.
 
     Raises:
-        UserError: something is missing.
+        UserError: ROS 1 is not there, or no roscore answers.
     """
-    if options.ros2:
-        require(CYCLONEDDS)
     if options.ros1:
         require_roscore()
 
@@ -34,8 +31,6 @@ def managers(options: DriveOptions, drive: ShownDrive) -> list[BaseManager]:
     found: list[BaseManager] = []
     live, say = drive.live, drive.say
     if options.ros2:
-        from basu_ros.dds import Ros2Node  # noqa: PLC0415 - DDS, an extra that bags and ROS 1 do not need
-
         found.append(PublishManager(live, Ros2Node, say))
     if options.ros1:
         found.append(PublishManager(live, Ros1Node, say))

@@ -68,6 +68,12 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     serve.add_argument(
         "--window-port", type=int, default=0, metavar="PORT", help="port of the page (default: the system chooses)"
     )
+    serve.add_argument(
+        "--ros2",
+        action="store_true",
+        help="publish sensors on ROS 2 and obey its commands, on this machine unless ROS's variables say otherwise "
+        "(needs: pip install linden-ros2)",
+    )
     serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
     serve.set_defaults(command=run)
 
@@ -82,10 +88,11 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     allow_connections()
     first_start = FirstStart(_say)
-    window = None
+    window = publisher = None
     with background_work_ended(), Ending() as ending:
         try:
             window = _window_of(arguments)
+            publisher = _publisher_of(arguments)
             with _collector_paused():
                 # here, not above: it brings in the compiler, which other commands of this program do not need
                 from linden.cli.server_start import make_server  # noqa: PLC0415 - see above
@@ -93,6 +100,8 @@ def run(arguments: argparse.Namespace) -> int:
                 started = make_server(arguments, first_start)
                 if window is not None:
                     _say(f"linden: window {window.attach(started.server)}")
+                if publisher is not None:
+                    _say(f"linden: ROS 2 {publisher.attach(started.server)}")
                 _say(f"linden: ready, rpc port {started.rpc_port}, streaming port {started.streaming_port}")
             if arguments.gates:
                 started.server.accept_only(os.getppid())
@@ -101,8 +110,9 @@ def run(arguments: argparse.Namespace) -> int:
             started.server.run()
         finally:
             first_start.end()
-            if window is not None:
-                window.close()
+            for plugin in (window, publisher):
+                if plugin is not None:
+                    plugin.close()
     return 0
 
 
@@ -114,13 +124,32 @@ def _window_of(arguments: argparse.Namespace) -> Any:  # noqa: ANN401 - of anoth
     """
     if not (arguments.window or arguments.window_control):
         return None
-    try:
-        module = importlib.import_module("linden_window.attached")
-    except ModuleNotFoundError as error:
-        raise UserError(
-            f"--window needs the package {error.name}, which comes with: pip install linden-window"
-        ) from None
+    module = _plugin("linden_window.attached", "--window")
     return module.AttachedWindow(may_control=arguments.window_control, port=arguments.window_port)
+
+
+def _publisher_of(arguments: argparse.Namespace) -> Any:  # noqa: ANN401 - of another distribution
+    """Return a new node of ROS 2, if the user wants one; None otherwise.
+
+    Raises:
+        UserError: its package is not installed, or ROS 2's domain cannot be joined.
+    """
+    return _plugin("linden_ros2.attached", "--ros2").AttachedPublisher() if arguments.ros2 else None
+
+
+def _plugin(name: str, option: str) -> Any:  # noqa: ANN401 - a module
+    """Return the module ``name`` of a plugin of the server.
+
+    Raises:
+        UserError: it is not installed.
+    """
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        distribution = name.partition(".")[0].replace("_", "-")
+        raise UserError(
+            f"{option} needs the package {error.name}, which comes with: pip install {distribution}"
+        ) from None
 
 
 @contextmanager

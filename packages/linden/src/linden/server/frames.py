@@ -1,6 +1,6 @@
 """The messages of one frame: the world snapshot and the measurements of the sensors, as bytes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import msgpack
@@ -127,9 +127,9 @@ def world_payload(simulation: World) -> bytes:
     )
 
 
-def sensor_payloads(simulation: World, listened: set[int]) -> list[tuple[int, bytes]]:
-    """Return (stream id, message) of all measurements of this frame that have subscribers."""
-    return [(item.sensor.stream_id, _payload(simulation, item)) for item in simulation.measure(listened)]
+def sensor_payloads(simulation: World, measured: Sequence[Measurement]) -> list[tuple[int, bytes]]:
+    """Return (stream id, message) of measurements of this frame."""
+    return [(item.sensor.stream_id, _payload(simulation, item)) for item in measured]
 
 
 def _payload(simulation: World, measurement: Measurement) -> bytes:

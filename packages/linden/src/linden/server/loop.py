@@ -27,7 +27,7 @@ from linden.server.gates import Gates
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
 from linden.server.rpc import session
-from linden.server.rpc.context import Context, Frames
+from linden.server.rpc.context import Context, Follower, Frames
 from linden.server.stall_log import StallLog
 from linden.server.subscribers import Subscribers
 from linden.world import World
@@ -124,23 +124,25 @@ class Server:
 
         self._selector.register(file, _READ, order)
 
-    def show(self, file: int, after_frame: Callable[[], None], read: Callable[["FrameClock"], bool]) -> None:
-        """Call ``after_frame`` after each frame, and ``read`` with the clock whenever ``file`` can be read.
+    def follow(self, follower: Follower, file: int, read: Callable[["FrameClock"], bool]) -> None:
+        """Let a plugin follow the frames, and call ``read`` with the clock whenever ``file`` can be read.
 
-        ``read`` returns False when nothing more will come; then neither is called again.
+        ``read`` returns False when nothing more will come; then the plugin follows no more.
         """
-        self.context.after_frame = after_frame
+        followers = self.context.followers
+        followers.append(follower)
 
         def turn(_events: int) -> None:
             try:
                 goes_on = read(self._pace)
-            except Exception as error:  # noqa: BLE001 - a bug of a window must not end the sessions of clients
-                self.context.log_bug("internal error in the window; the server goes on without it.", error)
+            except Exception as error:  # noqa: BLE001 - a bug of a plugin must not end the sessions of clients
+                self.context.drop(follower, error)
                 goes_on = False
             self._calls.publish()
             if not goes_on:
                 self._selector.unregister(file)
-                self.context.after_frame = None
+                if follower in followers:
+                    followers.remove(follower)
 
         self._selector.register(file, _READ, turn)
 

@@ -4,6 +4,7 @@ import logging
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple, Protocol
 
 from linden.maps.library import MapLibrary
@@ -11,7 +12,9 @@ from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.wire.rpc import Packed
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.replay.file.folder import RecordingFolder
+from linden.sensors.runtime.measure import Measurement
 from linden.server.rpc.warning_log import WarningLog
+from linden.simulation.actor_table import ActorRecord
 from linden.world import World
 
 log = logging.getLogger("linden")
@@ -24,8 +27,34 @@ class Frames(Protocol):
         """Return the world snapshot: headers and one row for each actor."""
         ...
 
-    def sensor_payloads(self, simulation: World, listened: set[int]) -> Sequence[tuple[int, bytes]]:
-        """Return this frame's measurements by stream, for streams with subscribers."""
+    def sensor_payloads(self, simulation: World, measured: Sequence[Measurement]) -> Sequence[tuple[int, bytes]]:
+        """Return measurements of this frame as bytes, by stream."""
+        ...
+
+
+class Follower(NamedTuple):
+    """A plugin of the server that follows its frames, such as a window or a publisher."""
+
+    name: str
+    """As the log calls it."""
+    after_frame: Callable[[Sequence[Measurement]], None]
+    """Called after each frame with what sensors measured in it."""
+    before_frame: Callable[[], None] | None = None
+    """Called before each frame."""
+
+
+class SensorPublisher(Protocol):
+    """What publishes measurements on ROS 2: ``linden_ros2.publisher``."""
+
+    streams: set[int]
+    """Streams of sensors that are measured in each frame even without subscribers."""
+
+    def enable(self, sensor: ActorRecord) -> None:
+        """Publish a sensor also without subscribers.
+
+        Raises:
+            Refusal: it has no topic.
+        """
         ...
 
 
@@ -62,27 +91,47 @@ class Context:
     """The lamps of all vehicles as they were packed last."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
-    after_frame: Callable[[], None] | None = None
-    """Called after each frame by a window; if it raises an error, the error is logged and it is not called again."""
+    followers: list[Follower] = field(default_factory=list)
+    """A follower that raises an error follows no more; the error is logged."""
+    publisher: SensorPublisher | None = None
+    """Of a server that was started with ``--ros2``."""
     warnings: WarningLog = field(default_factory=WarningLog)
     bugs: WarningLog = field(default_factory=WarningLog)
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
+        for follower in tuple(self.followers):
+            if follower.before_frame is not None:
+                self._call(follower, follower.before_frame)
         fixed_s = self.world.settings.fixed_delta_seconds
         self.world.step(self.variable_step_s() if fixed_s is None else fixed_s)
         self.unshown_load = None
         listened = self.streams.listened()
         if WORLD_OBSERVER_ID in listened:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.world)))
-        self.outbox.extend(self.frames.sensor_payloads(self.world, listened))
-        if self.after_frame is not None:
-            try:
-                self.after_frame()
-            except Exception as error:  # noqa: BLE001 - a bug of a window must not end the sessions of clients
-                self.after_frame = None
-                self.log_bug("internal error in the window; the server goes on without it.", error)
+        measured: Sequence[Measurement]
+        if self.publisher is not None:
+            measured = self.world.measure(listened | self.publisher.streams)
+            sent = [each for each in measured if each.sensor.stream_id in listened]
+        else:
+            measured = sent = self.world.measure(listened)
+        self.outbox.extend(self.frames.sensor_payloads(self.world, sent))
+        for follower in tuple(self.followers):
+            self._call(follower, partial(follower.after_frame, measured))
         return self.world.frame
+
+    def _call(self, follower: Follower, work: Callable[[], None]) -> None:
+        """Let a follower do its part of a frame."""
+        try:
+            work()
+        except Exception as error:  # noqa: BLE001 - a bug of a plugin must not end the sessions of clients
+            self.drop(follower, error)
+
+    def drop(self, follower: Follower, error: Exception) -> None:
+        """Go on without a follower that has raised an error; nothing happens if that is so already."""
+        if follower in self.followers:
+            self.followers.remove(follower)
+            self.log_bug(f"internal error in the {follower.name}; the server goes on without it.", error)
 
     def begin_pending_load(self) -> None:
         """Begin the episode that a load has been answered for, if there is one."""
@@ -100,7 +149,10 @@ class Context:
         if not self.builds_the_scene():
             return False
         world = self.world
-        return world.sensors.any_looking(world.episode.actors, self.streams.listened())
+        listened = self.streams.listened()
+        if self.publisher is not None:
+            listened |= self.publisher.streams
+        return world.sensors.any_looking(world.episode.actors, listened)
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""

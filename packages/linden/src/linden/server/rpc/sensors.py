@@ -1,5 +1,9 @@
-"""Sensors: streams, texts that they send, vehicles that they leave out. Source of names: LibCarla 0.9.16."""
+"""Sensors: streams, topics of ROS 2, texts that they send, vehicles that they leave out.
 
+Source of names: LibCarla 0.9.16.
+"""
+
+from linden.errors import Refusal
 from linden.protocol.wire.decode import U32
 from linden.protocol.wire.stream import Token
 from linden.server.rpc.context import Context
@@ -11,6 +15,34 @@ from linden.simulation.actor_table import ActorRefusal
 def get_sensor_token(context: Context, stream_id: U32) -> Token:
     """Return where to subscribe to a stream."""
     return context.streams.token(stream_id)
+
+
+@method("enable_sensor_for_ros")
+def enable_sensor_for_ros(context: Context, stream_id: U32) -> None:
+    """Publish a sensor on ROS 2 from now on, also without subscribers."""
+    if context.publisher is None:
+        raise Refusal(
+            f"the sensor of stream {stream_id} is not published on ROS 2, because this server was started without "
+            "--ros2; start it with `linden serve --ros2`, which needs: pip install linden-ros2"
+        )
+    for record in context.world.episode.actors:
+        if record.stream_id == stream_id and stream_id:
+            context.publisher.enable(record)
+            return
+    raise Refusal(f"no sensor of this episode has the stream {stream_id}, so nothing is published on ROS 2")
+
+
+@method("disable_sensor_for_ros")
+def disable_sensor_for_ros(context: Context, stream_id: U32) -> None:
+    """Publish a sensor on ROS 2 no more, unless a client subscribes to it."""
+    if context.publisher is not None:
+        context.publisher.streams.discard(stream_id)
+
+
+@method("is_sensor_enabled_for_ros")
+def is_sensor_enabled_for_ros(context: Context, stream_id: U32) -> bool:
+    """Whether a sensor is published on ROS 2 also without subscribers."""
+    return context.publisher is not None and stream_id in context.publisher.streams
 
 
 @method("send")

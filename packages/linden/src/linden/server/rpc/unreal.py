@@ -37,26 +37,6 @@ def are_gbuffers_enabled(context: Context, actor_id: U32) -> bool:
     return False
 
 
-@method("enable_sensor_for_ros")
-def enable_sensor_for_ros(_context: Context, stream_id: U32) -> None:
-    """Refuse: the ROS 2 publisher is compiled into CARLA's server."""
-    raise Refusal(
-        f"the sensor of stream {stream_id} cannot publish to ROS 2 by itself: that publisher is compiled into CARLA's "
-        f"own server (--ros2); a bridge that is an ordinary client, such as carla-ros-bridge, does it instead"
-    )
-
-
-@method("disable_sensor_for_ros")
-def disable_sensor_for_ros(_context: Context, _stream_id: U32) -> None:
-    """Stop a sensor's publishing to ROS 2: none does."""
-
-
-@method("is_sensor_enabled_for_ros")
-def is_sensor_enabled_for_ros(_context: Context, _stream_id: U32) -> bool:
-    """Whether a sensor publishes to ROS 2 by itself: never."""
-    return False
-
-
 @method("enable_carsim")
 def enable_carsim(context: Context, actor_id: U32, _simfile: str) -> None:
     """Refuse: CarSim is a commercial program that CARLA reaches through a plugin of Unreal's."""

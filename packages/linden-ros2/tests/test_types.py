@@ -1,13 +1,9 @@
 """Message types from their definitions."""
 
-import importlib
-import sys
-
 import numpy as np
 import pytest
 
-from basu.errors import UserError
-from basu_ros.types import Generation, types_of
+from linden_ros2.types import Generation, types_of
 
 
 @pytest.mark.parametrize("generation", Generation)
@@ -50,10 +46,3 @@ def test_arrays_of_fixed_length_are_full_of_zeros() -> None:
     pose = types_of(Generation.ROS_2).message("geometry_msgs/msg/PoseWithCovariance")
     assert pose.covariance.shape == (36,)
     assert not np.any(pose.covariance)
-
-
-def test_a_missing_rosbags_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "rosbags", None)
-    monkeypatch.delitem(sys.modules, "basu_ros")
-    with pytest.raises(UserError, match="pip install basu-ros"):
-        importlib.import_module("basu_ros")

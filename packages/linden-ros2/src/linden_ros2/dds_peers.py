@@ -1,28 +1,20 @@
-"""Peers on a topic of ROS 2: whether their version of its type is ours, and why a publisher cannot be heard.
-
-The import raises UserError where cyclonedds is not installed.
-"""
+"""Peers on a topic of ROS 2: whether their version of its type is ours, and why a publisher cannot be heard."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any
 
-from basu.errors import UserError
-from basu_ros.dds_types import dds_name
-from basu_ros.extras import CYCLONEDDS
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
+from cyclonedds.core import InstanceState, Policy, ReadCondition, SampleState, ViewState
 
-try:
-    from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
-    from cyclonedds.core import InstanceState, Policy, ReadCondition, SampleState, ViewState
-except ImportError as error:
-    raise UserError(CYCLONEDDS.missing) from error
+from linden_ros2.dds_types import dds_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu_ros.topics import Topic
-    from basu_ros.types import Types
+    from linden_ros2.topic import Topic
+    from linden_ros2.types import Types
 
 TYPE_HASH = re.compile(rb"typehash=(RIHS01_[0-9a-f]{64});")  # in the user data of an endpoint: REP 2016, rmw since Iron
 MOST = 1000  # publishers that are looked through

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from basu_ros import vehicle_messages
-from basu_ros.moment import Mount
-from basu_ros.sensor_messages import CITYSCAPES, SEMANTIC_ROW, sensor_messages, sensor_types
-from basu_ros.types import Generation, types_of
+from linden_ros2.basic_messages import header
+from linden_ros2.mount import Mount
+from linden_ros2.sensor_messages import CITYSCAPES, SEMANTIC_ROW, sensor_messages, sensor_types
+from linden_ros2.types import Generation, types_of
 
 TYPES = types_of(Generation.ROS_2)
-HEADER = vehicle_messages.header(TYPES, 1.25, "hero/S")
+HEADER = header(TYPES, 1.25, "hero/S")
 
 
 def made(type_id: str, **fields: Any) -> list[tuple[str, Any]]:
@@ -131,7 +131,8 @@ def test_the_topics_of_a_sensor_are_known_before_it_measures(type_id: str) -> No
 
 def test_ros_1_has_capital_matrices() -> None:
     types = types_of(Generation.ROS_1)
-    header = vehicle_messages.header(types, 0.0, "hero/S")
-    made_1 = sensor_messages(types, header, Mount("S", "sensor.camera.rgb"), Fake(**picture([[[1, 2, 3, 4]] * 2])))
+    made_1 = sensor_messages(
+        types, header(types, 0.0, "hero/S"), Mount("S", "sensor.camera.rgb"), Fake(**picture([[[1, 2, 3, 4]] * 2]))
+    )
     assert made_1[1][1].K.tolist()[0] == pytest.approx(1.0)
     assert len(types.data(made_1[1][1])) > 0

@@ -1,24 +1,15 @@
-"""DDS types of ROS messages: the structures that ROS 2 puts on the wire, made of the definitions, with ready bytes.
-
-The import raises UserError where cyclonedds is not installed.
-"""
+"""DDS types of ROS messages: the structures that ROS 2 puts on the wire, made of the definitions, with ready bytes."""
 
 from __future__ import annotations
 
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from basu.errors import UserError
-from basu_ros.extras import CYCLONEDDS
-
-try:
-    from cyclonedds import idl
-    from cyclonedds.idl import types as idl_types
-except ImportError as error:
-    raise UserError(CYCLONEDDS.missing) from error
+from cyclonedds import idl
+from cyclonedds.idl import types as idl_types
 
 if TYPE_CHECKING:
-    from basu_ros.types import Types
+    from linden_ros2.types import Types
 
 dds: Any = idl_types  # its generics are no generics to the type checker
 TEXTS = ("string", "wstring")

@@ -1,21 +1,12 @@
-"""The domain of DDS that a node of ROS 2 joins, and its settings, from the variables of ROS and Cyclone DDS.
-
-The import raises UserError where cyclonedds is not installed.
-"""
+"""The domain of DDS that a node of ROS 2 joins, and its settings, from the variables of ROS and Cyclone DDS."""
 
 from __future__ import annotations
 
 import os
 from typing import Any
 
-from basu.errors import UserError
-from basu_ros.extras import CYCLONEDDS
-
-try:
-    from cyclonedds.core import DDSException
-    from cyclonedds.domain import Domain, DomainParticipant
-except ImportError as error:
-    raise UserError(CYCLONEDDS.missing) from error
+from cyclonedds.core import DDSException
+from cyclonedds.domain import Domain, DomainParticipant
 
 DOMAINS = 232  # the highest domain: its ports still lie below 65536 (DDSI-RTPS 2.3, 9.6.1.1)
 FAST_DDS = "<Compatibility><IgnoreTypeInformation>1.15</IgnoreTypeInformation></Compatibility>"
@@ -35,38 +26,48 @@ A node of Fast DDS that comes later does not call us there, so we call each seco
 _domains: dict[int, Any] = {}
 
 
+class DdsError(Exception):
+    """A domain cannot be joined; a sentence that says why, and what to do."""
+
+
 def domain_of_environment() -> int:
     """Return the domain that ``ROS_DOMAIN_ID`` names, 0 without it.
 
     Raises:
-        UserError: it names none.
+        DdsError: it names none.
     """
     text = os.environ.get("ROS_DOMAIN_ID", "").strip() or "0"
     if not text.isdecimal() or int(text) > DOMAINS:
-        raise UserError(f"ROS_DOMAIN_ID is '{text}'; it must be a number from 0 to {DOMAINS}")
+        raise DdsError(f"ROS_DOMAIN_ID is '{text}'; it must be a number from 0 to {DOMAINS}")
     return int(text)
 
 
 def is_local() -> bool:
-    """Return whether ROS is to stay on this machine, by ``ROS_LOCALHOST_ONLY`` or ``ROS_AUTOMATIC_DISCOVERY_RANGE``."""
-    return (
-        os.environ.get("ROS_LOCALHOST_ONLY", "").strip() == "1"
-        or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").strip().upper() == "LOCALHOST"
-    )
+    """Return whether ROS stays on this machine, as it does unless a variable says otherwise.
+
+    ``ROS_LOCALHOST_ONLY=0``, another ``ROS_AUTOMATIC_DISCOVERY_RANGE`` than ``LOCALHOST``, or settings of Cyclone DDS's
+    own open other networks.
+    """
+    only, reach = (os.environ.get(name, "").strip() for name in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"))
+    if only:
+        return only != "0"
+    if reach:
+        return reach.upper() == "LOCALHOST"
+    return not os.environ.get("CYCLONEDDS_URI", "").strip()
 
 
 def joined(domain: int) -> Any:  # noqa: ANN401 - of cyclonedds
     """Return a new participant of a domain. The first one of the process brings the domain's settings.
 
     Raises:
-        UserError: DDS finds no network.
+        DdsError: DDS finds no network.
     """
     try:
         if domain not in _domains:
             _domains[domain] = _configured(domain)
         return DomainParticipant(domain)
     except DDSException as error:
-        raise UserError(
+        raise DdsError(
             f"DDS cannot join the domain {domain}: {error}; see ROS_DOMAIN_ID, CYCLONEDDS_URI and whether "
             "this machine has a network, or set ROS_LOCALHOST_ONLY=1"
         ) from error

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu_ros import frames
+from linden_ros2 import frames
 
 MIRROR = np.diag([1.0, -1.0, 1.0])
 any_angle = st.floats(-math.pi, math.pi)

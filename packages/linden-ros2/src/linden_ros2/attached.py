@@ -1,0 +1,41 @@
+"""`AttachedPublisher`: ROS 2 of a running server. The server loads this module for ``linden serve --ros2``."""
+
+from typing import TYPE_CHECKING
+
+from linden.errors import UserError
+from linden.server.rpc.context import Follower
+from linden_ros2.dds_domain import DdsError, is_local
+from linden_ros2.dds_node import DdsNode
+from linden_ros2.publisher import WorldPublisher
+
+if TYPE_CHECKING:
+    from linden.server.loop import Server
+
+NODE = "carla"
+
+
+class AttachedPublisher:
+    """The node of a server, and the publisher that follows its frames."""
+
+    def __init__(self) -> None:
+        """Join the domain of the environment.
+
+        Raises:
+            UserError: ``ROS_DOMAIN_ID`` names no domain, or DDS finds no network.
+        """
+        try:
+            self._node = DdsNode(NODE)
+        except DdsError as error:
+            raise UserError(f"--ros2: {error}") from error
+
+    def attach(self, server: "Server") -> str:
+        """Publish a server's frames from now on; return where, for its user."""
+        context = server.context
+        context.publisher = publisher = WorldPublisher(context, self._node)
+        context.followers.append(Follower("publisher of ROS 2", publisher.after_frame, publisher.before_frame))
+        reach = "this machine alone" if is_local() else "all networks"
+        return f"domain {self._node.domain}, {reach}, topics /clock, /tf and /carla/..."
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._node.close()
