@@ -162,6 +162,31 @@ class Worlds:
         for world, velocity in zip(chosen.tolist(), wanted.tolist(), strict=True):
             self.bodies(world).set_target_velocity(slot, velocity)
 
+    def set_state(self, states: StructuredArray, slot: int = 0, worlds: Chosen = None) -> None:
+        """Give the bodies in a slot of ``worlds`` (K,) the states (K,) of BODY, as :attr:`state` has them.
+
+        What the body is (kind, specification) stays. So the states must be of bodies that were spawned alike.
+
+        Raises:
+            UserError: the arguments cannot be used; no world has changed then.
+        """
+        chosen = self._chosen(worlds)
+        rows = self._rows(slot, chosen)
+        given = np.asarray(states)
+        if given.dtype != BODY or given.shape != (len(chosen),):
+            raise UserError(f"states needs an array ({len(chosen)},) of BODY, as `state` has, not {_short(states)}")
+        if (given["kind"] != self._table.state["kind"][chosen, slot]).any() or not given["alive"].all():
+            raise UserError(
+                f"a state is of another kind of body than that in slot {slot}; spawn the same actor in both"
+            )
+        if not (np.abs(given["position"]) < FARTHEST_M).all():  # false of nan as well
+            raise UserError("a state has a position that is not a finite place")
+        if self._gpu is not None and self._gpu.is_current:
+            self._gpu.set_state(rows, np.ascontiguousarray(given))
+            self._host_is_current = False
+        else:
+            self._table.state.reshape(-1)[rows] = given
+
     def bodies(self, world: int) -> Bodies:
         """Return the bodies of one world as the server has them: a view, by which everything can be read and set."""
         number = _whole("world", world, 0, self.count - 1)
