@@ -4,7 +4,7 @@ All worlds share the map, its scenery and one table of vehicle specifications. E
 the actors and the controls of the server's world equals that, byte for byte.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -23,6 +23,7 @@ from linden.physics.vehicle.controls import set_controls
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.sensors.camera.spec import LARGEST_SIDE_PX
 from linden.sensors.casting.thread_pool import in_stretches
 from linden.simulation.below_ground import DEEP_M
 from linden.simulation.episode import limits_of_lanes_kmh
@@ -32,6 +33,7 @@ from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
 from linden.world import clock_s, substeps_of
+from linden.worlds_sensors import LidarScans, Moment, Value, WorldsSensors
 
 if TYPE_CHECKING:
     from linden.worlds_gpu import DeviceColumn, GpuWorlds
@@ -93,6 +95,7 @@ class Worlds:
         self._host_is_current = True
         self._limit_of_lane_kmh: F64 | None = None
         self._all = np.arange(self.count, dtype=np.int32)
+        self._sensors = WorldsSensors(self.map, self.count, device)
 
     # -- actors --------------------------------------------------------------------------------------------------------
 
@@ -133,6 +136,7 @@ class Worlds:
                 row = made.table.row_of(design, lambda: prototype.spec(own))  # noqa: B023 - called before the next turn
                 self._table.spec_of[mine, slot] = row
         self._table.counts[chosen] = slot + 1
+        self._sensors.note(chosen, slot, self._table.state.shape[1], description)
         self._keep_as_first(chosen)
         return slot
 
@@ -250,6 +254,7 @@ class Worlds:
         met = [touched[start] for start in sorted(touched) if len(touched[start])]
         self._contacts = np.concatenate(met) if met else np.zeros(0, CONTACT)
         self._frames[running] += 1
+        self._sensors.step(self._table, running, self.dt_s)
         position_m = self._table.state["position"]
         inside = np.abs(position_m) < FARTHEST_M  # false of nan as well
         self._valid[running] = inside.all(axis=(1, 2))[running]
@@ -317,8 +322,85 @@ class Worlds:
         self._table.state[chosen] = np.zeros((), self._table.state.dtype)
         self._table.spec_of[chosen] = 0
         self._table.counts[chosen] = 0
+        self._sensors.forget(chosen)
         self._keep_as_first(chosen)
         self._begin(chosen)
+
+    # -- sensors -------------------------------------------------------------------------------------------------------
+
+    def lidar(
+        self,
+        transform: ArrayLike,
+        *,
+        slot: int | None = 0,
+        worlds: Chosen = None,
+        start_deg: float = 0.0,
+        **attributes: Value,
+    ) -> LidarScans:
+        """Return what a lidar measures in each of ``worlds`` (K,): the sweep of one step, from ``start_deg`` on.
+
+        ``transform``, (6,) or (K, 6) in m and degrees, is its place on the body in ``slot``, or in the world for None.
+        ``attributes`` are those of CARLA's ``sensor.lidar.ray_cast``. Their defaults are CARLA's but for
+        ``rotation_frequency``, with which a step is a whole turn. The noise changes in each step; its seed is
+        ``noise_seed`` and the number of the world together.
+
+        Raises:
+            UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
+        """
+        if isinstance(start_deg, bool) or not isinstance(start_deg, (int, float)) or not 0.0 <= start_deg < 360.0:
+            raise UserError(f"start_deg is an angle from 0 to below 360, not {_short(start_deg)}")
+        chosen, moments = self._moments(transform, slot, worlds, lit=False)
+        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), chosen, self._frames, moments)
+
+    def pictures(
+        self,
+        kind: str,
+        transform: ArrayLike,
+        *,
+        size: tuple[int, int] = (64, 64),
+        fov: float = 90.0,
+        slot: int | None = 0,
+        worlds: Chosen = None,
+        **attributes: Value,
+    ) -> NDArray[np.float32] | NDArray[np.uint8]:
+        """Return what a camera shows in each of ``worlds`` (K,).
+
+        ``kind`` is "depth" for (K, H, W) m, "semantic" for (K, H, W) tags of CARLA, or "rgb" for (K, H, W, 3) bytes.
+        ``size`` is width and height in pixels, ``fov`` the angle across in degrees. ``transform`` and ``slot`` are as
+        for :meth:`lidar`; ``attributes`` are those of CARLA's camera of that kind.
+
+        Raises:
+            UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
+        """
+        try:
+            width, height = size
+        except (TypeError, ValueError):
+            raise UserError(f"size is the width and the height of the pictures, not {_short(size)}") from None
+        for name, side in (("the width", width), ("the height", height)):
+            _whole(name, side, 1, LARGEST_SIDE_PX)
+        chosen, moments = self._moments(transform, slot, worlds, lit=kind == "rgb")
+        asked = {"image_size_x": width, "image_size_y": height, "fov": fov} | attributes
+        return self._sensors.pictures(kind, asked, chosen, moments)
+
+    def _moments(
+        self, transform: ArrayLike, slot: int | None, worlds: Chosen, *, lit: bool
+    ) -> tuple[NDArray[np.int32], Iterator[Moment]]:
+        """Return the worlds (K,) to be looked at, and what is seen in each.
+
+        Raises:
+            UserError: the arguments cannot be used.
+        """
+        chosen = self._chosen(worlds)
+        wanted = _numbers("transform (x, y, z, pitch, yaw, roll)", transform, (len(chosen), 6))
+        if slot is not None:
+            self._rows(slot, chosen)
+        self._read()
+        lost = chosen[~self._valid[chosen]]
+        if len(lost):
+            raise UserError(f"world {lost[0]} is not valid, since a body of it got lost; reset it or leave it out")
+        colours = self.light_colours[chosen] if lit else None
+        now_s = self.elapsed_s[chosen]
+        return chosen, self._sensors.moments(self._table, chosen, slot, wanted, colours, now_s)
 
     # -- what there is -------------------------------------------------------------------------------------------------
 
@@ -432,6 +514,7 @@ class Worlds:
         self._table.kept = [self._first.spec_of]
 
     def _begin(self, chosen: NDArray[np.int32]) -> None:
+        self._sensors.begin(chosen)
         self._valid[chosen], self._frames[chosen] = True, 0
         self._forget_contacts(chosen)
 

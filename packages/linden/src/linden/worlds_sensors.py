@@ -1,0 +1,319 @@
+"""`WorldsSensors`: lidars and cameras in many worlds at once, by the functions of the server's sensors.
+
+One scene and one caster serve all worlds. The bodies of one world after the other are put into it and its rays cast.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.blueprints.library import packaged
+from linden.errors import Refusal, UserError
+from linden.maps.library import LoadedMap
+from linden.physics.columns import BodyTable
+from linden.physics.state import NO_BODY, VEHICLE, WALKER
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.enums import AttributeType
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.actors.actor_meshes import actor_meshes
+from linden.scenery.actors.posing import walker_frames
+from linden.sensors.camera.cameras import CAMERAS, pixels
+from linden.sensors.camera.labels import depth_m
+from linden.sensors.casting.caster import Instances
+from linden.sensors.casting.choose import check_device
+from linden.sensors.devices.lidar.firing_pattern import fire, read_fan
+from linden.sensors.devices.lidar.sensor import read_losses, scan
+from linden.sensors.runtime.light_state import LightStateCache
+from linden.sensors.runtime.sensor_scene import SensorScene
+from linden.sensors.runtime.visible_actors import Motion, PartRows, instances_of, matrices, put_vehicles, rigid_frames
+from linden.sensors.view import Seen, SensorLook
+from linden.simulation.episode import Episode
+from linden.simulation.snapshot_rows import gather_motion
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+U8 = NDArray[np.uint8]
+Value: TypeAlias = str | float | bool
+
+LIDAR = "sensor.lidar.ray_cast"
+CAMERA_OF = {
+    "depth": "sensor.camera.depth",
+    "rgb": "sensor.camera.rgb",
+    "semantic": "sensor.camera.semantic_segmentation",
+}
+"""The camera's blueprint of each kind of pictures."""
+
+UNKNOWN = -1
+"""In place of a blueprint: of a body that `Worlds.spawn` has not made."""
+
+MOST_BYTES = 4 * 2**30
+_TOGETHER = 64
+"""Worlds whose bodies are gathered at once: more take memory and are no faster."""
+
+
+class LidarScans(NamedTuple):
+    """Sweeps of lidars in K worlds, of C channels, the uppermost first, of P rays each."""
+
+    points: F32  # (K, C, P, 4): x, y, z in the sensor's frame, m, and the intensity from 0 to 1; zeros without a return
+    hit: NDArray[np.bool_]  # (K, C, P) whether the ray returned
+
+
+class Moment(NamedTuple):
+    """What one world looks like to a sensor."""
+
+    index: int  # of the world among those that are asked
+    seen: Seen
+    pose: Transform  # of the sensor, in the world
+
+
+class WorldsSensors:
+    """Sensors of many worlds on one map, and what they need to know of the bodies beyond their state.
+
+    Attributes:
+        described: (W, S) row in the list of blueprints of what was spawned in a slot, or `UNKNOWN`.
+        walked_m: (W, S) how far walkers have walked; their legs follow from it.
+    """
+
+    def __init__(self, world_map: LoadedMap, worlds: int, device: str) -> None:
+        self._map, self._device = world_map, device
+        self._descriptions: list[ActorDescription] = []
+        self._parts: PartRows | None = None
+        self.described: NDArray[np.int16] = np.full((worlds, 1), UNKNOWN, np.int16)
+        self.walked_m: F64 = np.zeros((worlds, 0))
+        self._base: Seen | None = None
+        self._lights = LightStateCache()
+
+    # -- what the bodies are -------------------------------------------------------------------------------------------
+
+    def note(self, chosen: I32, slot: int, slots: int, description: ActorDescription) -> None:
+        """Note what was spawned in a slot of worlds (K,), all of which have so many ``slots`` now."""
+        if self.described.shape[1] < slots:
+            grown = np.full((len(self.described), slots), UNKNOWN, np.int16)
+            grown[:, : self.described.shape[1]] = self.described
+            self.described = grown
+        if description not in self._descriptions:
+            self._descriptions.append(description)
+            self._parts = None
+        self.described[chosen, slot] = self._descriptions.index(description)
+        if description.id.startswith("walker."):
+            walked_m = np.zeros(self.described.shape)
+            walked_m[:, : self.walked_m.shape[1]] = self.walked_m
+            self.walked_m = walked_m
+
+    def forget(self, chosen: I32) -> None:
+        """Forget the bodies of worlds (K,)."""
+        self.described[chosen] = UNKNOWN
+        self.begin(chosen)
+
+    def begin(self, chosen: I32) -> None:
+        """Let walkers of worlds (K,) begin to walk."""
+        self.walked_m[chosen] = 0.0
+
+    def step(self, table: BodyTable, running: I32, dt_s: float) -> None:
+        """Count the steps of walkers in worlds (K,) after a step of the worlds, as `simulation.walkers` does."""
+        slots = min(self.walked_m.shape[1], table.state.shape[1])
+        if slots:
+            state = table.state[running, :slots]
+            stride_m = np.hypot(state["velocity"][..., 0], state["velocity"][..., 1]) * dt_s
+            self.walked_m[running, :slots] += np.where(state["kind"] == WALKER, stride_m, 0.0)
+
+    # -- measurements --------------------------------------------------------------------------------------------------
+
+    def lidar(
+        self,
+        attributes: dict[str, Value],
+        start_deg: float,
+        interval_s: float,
+        chosen: I32,
+        frames: NDArray[np.int64],
+        moments: Iterator[Moment],
+    ) -> LidarScans:
+        """Return the sweeps of lidars in worlds (K,), each from ``start_deg`` on for a time.
+
+        Raises:
+            UserError: there is no such attribute, or it takes no such value; or the sweeps need too much memory.
+        """
+        description = _described(LIDAR, {"rotation_frequency": 1.0 / interval_s} | attributes)
+        fan, losses = read_fan(description), read_losses(description)
+        fired = fire(fan, start_deg, interval_s)
+        shape = len(chosen), len(fired.up), len(fired.sine)
+        _refuse_too_much(shape, 17, "rays")
+        found = LidarScans(np.zeros((*shape, 4), np.float32), np.zeros(shape, np.bool_))
+        points, hit = found.points.reshape(len(chosen), -1, 4), found.hit.reshape(len(chosen), -1)
+        for index, seen, pose in moments:
+            world, number = int(chosen[index]), max(0, int(frames[index]) - 1)
+            own = losses._replace(seed=losses.seed + world)
+            _, met, rays = scan(fan, own, fired, number, pose, seen.caster)
+            points[index, rays], hit[index, rays] = met, True
+        return found
+
+    def pictures(self, kind: str, attributes: dict[str, Value], chosen: I32, moments: Iterator[Moment]) -> F32 | U8:
+        """Return pictures in worlds (K,): metres (K, H, W), tags (K, H, W), or R, G, B (K, H, W, 3).
+
+        Raises:
+            UserError: there is no such kind or attribute, or it takes no such value; or they need too much memory.
+        """
+        if kind not in CAMERA_OF:
+            raise UserError(f"there are no pictures of kind {kind!r}; there are {', '.join(sorted(CAMERA_OF))}")
+        blueprint = CAMERA_OF[kind]
+        try:
+            picture = CAMERAS[blueprint](_described(blueprint, attributes)).picture
+        except Refusal as error:
+            raise UserError(_reason(error)) from error
+        shape: tuple[int, ...] = (len(chosen), picture.spec.height_px, picture.spec.width_px)
+        _refuse_too_much(shape, 4, "pixels")
+        found = np.empty((*shape, 3) if kind == "rgb" else shape, np.float32 if kind == "depth" else np.uint8)
+        for index, seen, pose in moments:
+            made = np.asarray(pixels(picture, SensorLook(seen, {}, pose, pose, np.zeros(3), 0, 0, 0.0)), np.uint8)
+            if kind == "depth":
+                found[index] = depth_m(made)
+            else:
+                found[index] = made[..., 2::-1] if kind == "rgb" else made[..., 2]
+        return found
+
+    # -- what they see -------------------------------------------------------------------------------------------------
+
+    def moments(
+        self, table: BodyTable, chosen: I32, slot: int | None, transform: F64, colours: U8 | None, now_s: F64
+    ) -> Iterator[Moment]:
+        """Yield worlds (K,) one after the other, their bodies put into the scene: each is to be looked at at once.
+
+        ``transform`` (K, 6) is where the sensor is: relative to the body in ``slot``, or in the world without one.
+        ``colours`` (K, L) are those of the lights, None where their colour cannot be seen.
+
+        Raises:
+            UserError: a body was not made by `Worlds.spawn`.
+        """
+        self._refuse_unknown(table, chosen)
+        base = self._scene()
+        for first in range(0, len(chosen), _TOGETHER):
+            part = slice(first, first + _TOGETHER)
+            poses, begins, bodies = self._gathered(table, chosen[part], slot, transform[part])
+            for row in range(len(chosen[part])):
+                own = slice(begins[row], begins[row + 1])
+                instances = Instances(*(column[own] for column in bodies))
+                base.caster.pose(instances)
+                seen = base._replace(instances=instances, now_s=float(now_s[first + row]))
+                if colours is not None:
+                    seen = self._lit(seen, colours[first + row])
+                pose = Transform(Vector3D(*poses[row, :3].tolist()), Rotation(*poses[row, 3:].tolist()))
+                yield Moment(first + row, seen, pose)
+
+    def _scene(self) -> Seen:
+        """Return the map without bodies; it is built at the first call."""
+        if self._base is None:
+            check_device(self._device)
+            scene = SensorScene()
+            scene.device = self._device
+            self._episode = Episode(self._map, first_frame=0)
+            self._base = scene.look(self._episode, 0)
+        return self._base
+
+    def _lit(self, seen: Seen, colours: U8) -> Seen:
+        """Return what is seen with the traffic lights (L,) in these colours."""
+        self._episode.traffic.state.colour[:] = colours
+        states = self._lights.of(self._episode)
+        return seen._replace(object_lights=states.lights, object_light_colour=states.colour)
+
+    def _gathered(
+        self, table: BodyTable, chosen: I32, slot: int | None, transform: F64
+    ) -> tuple[F64, NDArray[np.intp], Instances]:
+        """Return the poses (K, 6) of sensors in worlds (K,), and all bodies with where each world's begin (K + 1,)."""
+        flat, slots = table.state.reshape(-1), table.state.shape[1]
+        alive = table.state["alive"][chosen] & (table.state["kind"][chosen] != NO_BODY)
+        world, own_slot = np.nonzero(alive)
+        rows = (chosen[world] * slots + own_slot).astype(np.int32)
+        poses, relative = np.zeros((len(rows) + len(chosen), 6)), np.zeros((len(rows) + len(chosen), 6))
+        parent, moved_by = np.full(len(poses), -1, np.int32), np.full(len(poses), -1, np.int32)
+        moved_by[: len(rows)] = rows
+        relative[len(rows) :] = poses[len(rows) :] = transform
+        if slot is not None:
+            parent[len(rows) :] = np.flatnonzero(own_slot == slot)
+        gather_motion(
+            len(poses), poses, relative, parent, moved_by, flat["position"], flat["rotation"], flat["velocity"],
+            flat["angular_velocity"], flat["acceleration"], np.zeros((len(poses), 15), np.float32),
+        )  # fmt: skip
+        if self._parts is None:
+            self._parts = PartRows.of(self._descriptions, actor_meshes())
+        parts = _parts_of(self._parts, self.described[chosen][alive].astype(np.intp))
+        motion = Motion(
+            matrices(poses[: len(rows)]),
+            flat["velocity"][rows],
+            flat["angular_velocity"][rows],
+            (own_slot + 1).astype(np.uint32),
+            np.zeros(len(rows), np.uint32),
+        )
+        bodies = instances_of(parts, motion, self._frames(table, rows))
+        return poses[len(rows) :], np.searchsorted(world[parts.actor], np.arange(len(chosen) + 1)), bodies
+
+    def _frames(self, table: BodyTable, rows: I32) -> F64:
+        """Return the frames (A, 14, 3, 4) of the parts of bodies in flat rows (A,)."""
+        frames, bodies = rigid_frames(len(rows)), table.state.reshape(-1)[rows]
+        vehicles = np.flatnonzero(bodies["kind"] == VEHICLE)
+        if len(vehicles):
+            specs = table.specs[table.spec_of.reshape(-1)[rows[vehicles]]]
+            put_vehicles(frames, vehicles, specs, bodies["wheel_steer"][vehicles], bodies["wheel_turned"][vehicles])
+        walkers = np.flatnonzero(bodies["kind"] == WALKER)
+        if len(walkers):
+            world, slot = np.divmod(rows[walkers], table.state.shape[1])
+            velocity = bodies["velocity"][walkers]
+            frames[walkers] = walker_frames(
+                2.0 * bodies["half_extent"][walkers, 2],
+                self.walked_m[world, slot],
+                np.hypot(velocity[:, 0], velocity[:, 1]),
+            )
+        return frames
+
+    def _refuse_unknown(self, table: BodyTable, chosen: I32) -> None:
+        slots = min(self.described.shape[1], table.state.shape[1])
+        unknown = table.state["alive"][chosen]
+        unknown[:, :slots] &= self.described[chosen, :slots] == UNKNOWN
+        where = np.argwhere(unknown)
+        if len(where):
+            raise UserError(
+                f"the body in slot {where[0][1]} of world {chosen[where[0][0]]} was not made by `spawn`, so it has no "
+                "look; sensors need worlds whose bodies were spawned"
+            )
+
+
+def _parts_of(designs: PartRows, design: NDArray[np.intp]) -> PartRows:
+    """Return the parts of actors (A,), each of a design, from the parts of all designs."""
+    begins = np.searchsorted(designs.actor, np.arange(design.max(initial=-1) + 2))
+    count = begins[design + 1] - begins[design]
+    actor = np.repeat(np.arange(len(design)), count)
+    behind = np.arange(len(actor)) - np.repeat(np.cumsum(count) - count, count)
+    rows = begins[design][actor] + behind
+    return PartRows(actor, designs.mesh[rows], designs.frame[rows], designs.paint[rows], designs.scale[rows])
+
+
+def _described(blueprint: str, attributes: dict[str, Value]) -> ActorDescription:
+    """Return the complete description of a sensor.
+
+    Raises:
+        UserError: it has no such attribute, or the attribute takes no such value.
+    """
+    given = tuple(AttributeValue(name, AttributeType.STRING, _text(value)) for name, value in attributes.items())
+    try:
+        return packaged().validate(ActorDescription(0, blueprint, given))
+    except Refusal as error:
+        raise UserError(_reason(error)) from error
+
+
+def _text(value: Value) -> str:
+    return str(value).lower() if isinstance(value, (bool, np.bool_)) else str(value)
+
+
+def _reason(error: Refusal) -> str:
+    return str(error).rpartition("invalid actor description: ")[2]
+
+
+def _refuse_too_much(shape: tuple[int, ...], each: int, what: str) -> None:
+    needed = int(np.prod(shape, dtype=np.int64)) * each
+    if needed > MOST_BYTES:
+        raise UserError(
+            f"{shape[0]} worlds of {shape[1]} x {shape[2]} {what} take {needed / 2**30:.1f} GiB, and "
+            f"{MOST_BYTES / 2**30:.0f} GiB are the most; measure some of the worlds at a time"
+        )
