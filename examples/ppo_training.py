@@ -37,7 +37,7 @@ from linden_gym.starts import LAST_M
 OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 25
 AWAY_SHARE = 0.8  # of the episodes, which begin at a random place of the route
 KNOWN_SHARE = 0.85  # of the rest of the route, which is driven in the mean before the weights grow
-COMFORT_SHARE = 0.4  # of the training, in which the weights grow from 0 to their own values
+COMFORT_SHARE = 0.25  # of the training, in which the weights grow from 0 to their own values
 FIRST_FAILURE = 0.2  # of the cost of an early end, before it grows
 TOO_FAST = -0.5  # for a second with 1 m/s more than `fastest_mps`
 BRAKING_MPS2, BEFORE_LINE_M = 0.8, 1.0
@@ -102,7 +102,6 @@ class TrainingWorlds(VecEnv):
             speed_mps, offset_m = seen["ego"][:, 0], seen["ego"][:, 3]
             self.stood = np.where(speed_mps < STANDING_MPS, self.stood + 1, 0)
             gives_up = (np.abs(offset_m) > OFF_LANE_M) | (self.stood > STANDING_ACTIONS * HELD_STEPS)
-            gives_up |= told["infractions"] > 0
             gives_up &= ~(terminated | truncated)
             reward = reward + self._help(seen, told) + np.where(gives_up, self.failure * self._harshness(), 0.0)
             rewards += np.where(over, 0.0, reward)  # what an action that goes on does at a new beginning is not counted
@@ -130,7 +129,9 @@ class TrainingWorlds(VecEnv):
         is_near, to_line_m = seen["stop_sign"].T
         too_fast_mps = is_near * np.maximum(0.0, seen["ego"][:, 0] - fastest_mps(to_line_m))
         parts = told["reward_parts"]
-        return TOO_FAST * STEP_S * too_fast_mps - (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
+        spared = (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
+        spared += (1.0 - self._harshness()) * parts["infraction"]
+        return TOO_FAST * STEP_S * too_fast_mps - spared
 
     def close(self):
         self.worlds.close()

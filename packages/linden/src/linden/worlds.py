@@ -4,7 +4,7 @@ All worlds share the map, its scenery and one table of vehicle specifications. E
 the actors and the controls of the server's world equals that, byte for byte.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -33,7 +33,7 @@ from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
 from linden.world import clock_s, substeps_of
-from linden.worlds_sensors import LidarScans, Moment, Value, WorldsSensors
+from linden.worlds_sensors import Asked, LidarScans, Value, WorldsSensors
 
 if TYPE_CHECKING:
     from linden.worlds_gpu import DeviceColumn, GpuWorlds
@@ -349,8 +349,8 @@ class Worlds:
         """
         if isinstance(start_deg, bool) or not isinstance(start_deg, (int, float)) or not 0.0 <= start_deg < 360.0:
             raise UserError(f"start_deg is an angle from 0 to below 360, not {_short(start_deg)}")
-        chosen, moments = self._moments(transform, slot, worlds, lit=False)
-        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), chosen, self._frames, moments)
+        asked = self._asked(transform, slot, worlds, lit=False)
+        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), asked)
 
     def pictures(
         self,
@@ -378,14 +378,12 @@ class Worlds:
             raise UserError(f"size is the width and the height of the pictures, not {_short(size)}") from None
         for name, side in (("the width", width), ("the height", height)):
             _whole(name, side, 1, LARGEST_SIDE_PX)
-        chosen, moments = self._moments(transform, slot, worlds, lit=kind == "rgb")
-        asked = {"image_size_x": width, "image_size_y": height, "fov": fov} | attributes
-        return self._sensors.pictures(kind, asked, chosen, moments)
+        asked = self._asked(transform, slot, worlds, lit=kind == "rgb")
+        given = {"image_size_x": width, "image_size_y": height, "fov": fov} | attributes
+        return self._sensors.pictures(kind, given, asked)
 
-    def _moments(
-        self, transform: ArrayLike, slot: int | None, worlds: Chosen, *, lit: bool
-    ) -> tuple[NDArray[np.int32], Iterator[Moment]]:
-        """Return the worlds (K,) to be looked at, and what is seen in each.
+    def _asked(self, transform: ArrayLike, slot: int | None, worlds: Chosen, *, lit: bool) -> Asked:
+        """Return which worlds are to be measured, and where the sensors are.
 
         Raises:
             UserError: the arguments cannot be used.
@@ -399,8 +397,7 @@ class Worlds:
         if len(lost):
             raise UserError(f"world {lost[0]} is not valid, since a body of it got lost; reset it or leave it out")
         colours = self.light_colours[chosen] if lit else None
-        now_s = self.elapsed_s[chosen]
-        return chosen, self._sensors.moments(self._table, chosen, slot, wanted, colours, now_s)
+        return Asked(self._table, chosen, slot, wanted, self.frames[chosen], self.elapsed_s[chosen], colours)
 
     # -- what there is -------------------------------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@
 One scene and one caster serve all worlds. The bodies of one world after the other are put into it and its rays cast.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -21,8 +21,10 @@ from linden.scenery.actors.actor_meshes import actor_meshes
 from linden.scenery.actors.posing import walker_frames
 from linden.sensors.camera.cameras import CAMERAS, pixels
 from linden.sensors.camera.labels import depth_m
-from linden.sensors.casting.caster import Instances
+from linden.sensors.casting.caster import Caster, Instances
 from linden.sensors.casting.choose import check_device
+from linden.sensors.casting.embree import EmbreeCaster
+from linden.sensors.casting.thread_pool import in_stretches, processors
 from linden.sensors.devices.lidar.firing_pattern import fire, read_fan
 from linden.sensors.devices.lidar.sensor import read_losses, scan
 from linden.sensors.runtime.light_state import LightStateCache
@@ -52,6 +54,8 @@ UNKNOWN = -1
 MOST_BYTES = 4 * 2**30
 _TOGETHER = 64
 """Worlds whose bodies are gathered at once: more take memory and are no faster."""
+_FEWEST = 8
+"""Worlds that a thread takes at least."""
 
 
 class LidarScans(NamedTuple):
@@ -61,12 +65,16 @@ class LidarScans(NamedTuple):
     hit: NDArray[np.bool_]  # (K, C, P) whether the ray returned
 
 
-class Moment(NamedTuple):
-    """What one world looks like to a sensor."""
+class Asked(NamedTuple):
+    """Which worlds (K,) are to be measured, and where the sensors are."""
 
-    index: int  # of the world among those that are asked
-    seen: Seen
-    pose: Transform  # of the sensor, in the world
+    table: BodyTable
+    chosen: I32
+    slot: int | None  # of the body that carries the sensor; None where the sensor stands in the world
+    transform: F64  # (K, 6) of the sensor: relative to that body, or in the world; m and degrees
+    frames: NDArray[np.int64]  # (K,) steps since each world was reset
+    now_s: F64  # (K,)
+    colours: U8 | None  # (K, L) of the traffic lights; None where their colour cannot be seen
 
 
 class WorldsSensors:
@@ -85,6 +93,7 @@ class WorldsSensors:
         self.walked_m: F64 = np.zeros((worlds, 0))
         self._base: Seen | None = None
         self._lights = LightStateCache()
+        self._casters: list[EmbreeCaster] = []
 
     # -- what the bodies are -------------------------------------------------------------------------------------------
 
@@ -122,15 +131,7 @@ class WorldsSensors:
 
     # -- measurements --------------------------------------------------------------------------------------------------
 
-    def lidar(
-        self,
-        attributes: dict[str, Value],
-        start_deg: float,
-        interval_s: float,
-        chosen: I32,
-        frames: NDArray[np.int64],
-        moments: Iterator[Moment],
-    ) -> LidarScans:
+    def lidar(self, attributes: dict[str, Value], start_deg: float, interval_s: float, asked: Asked) -> LidarScans:
         """Return the sweeps of lidars in worlds (K,), each from ``start_deg`` on for a time.
 
         Raises:
@@ -139,18 +140,21 @@ class WorldsSensors:
         description = _described(LIDAR, {"rotation_frequency": 1.0 / interval_s} | attributes)
         fan, losses = read_fan(description), read_losses(description)
         fired = fire(fan, start_deg, interval_s)
-        shape = len(chosen), len(fired.up), len(fired.sine)
+        shape = len(asked.chosen), len(fired.up), len(fired.sine)
         _refuse_too_much(shape, 17, "rays")
         found = LidarScans(np.zeros((*shape, 4), np.float32), np.zeros(shape, np.bool_))
-        points, hit = found.points.reshape(len(chosen), -1, 4), found.hit.reshape(len(chosen), -1)
-        for index, seen, pose in moments:
-            world, number = int(chosen[index]), max(0, int(frames[index]) - 1)
-            own = losses._replace(seed=losses.seed + world)
+        points, hit = found.points.reshape(shape[0], -1, 4), found.hit.reshape(shape[0], -1)
+
+        def measure(index: int, seen: Seen, pose: Transform) -> None:
+            number = max(0, int(asked.frames[index]) - 1)
+            own = losses._replace(seed=losses.seed + int(asked.chosen[index]))
             _, met, rays = scan(fan, own, fired, number, pose, seen.caster)
             points[index, rays], hit[index, rays] = met, True
+
+        self._look(asked, measure, side_by_side=True)
         return found
 
-    def pictures(self, kind: str, attributes: dict[str, Value], chosen: I32, moments: Iterator[Moment]) -> F32 | U8:
+    def pictures(self, kind: str, attributes: dict[str, Value], asked: Asked) -> F32 | U8:
         """Return pictures in worlds (K,): metres (K, H, W), tags (K, H, W), or R, G, B (K, H, W, 3).
 
         Raises:
@@ -163,44 +167,65 @@ class WorldsSensors:
             picture = CAMERAS[blueprint](_described(blueprint, attributes)).picture
         except Refusal as error:
             raise UserError(_reason(error)) from error
-        shape: tuple[int, ...] = (len(chosen), picture.spec.height_px, picture.spec.width_px)
+        shape: tuple[int, ...] = (len(asked.chosen), picture.spec.height_px, picture.spec.width_px)
         _refuse_too_much(shape, 4, "pixels")
         found = np.empty((*shape, 3) if kind == "rgb" else shape, np.float32 if kind == "depth" else np.uint8)
-        for index, seen, pose in moments:
+
+        def measure(index: int, seen: Seen, pose: Transform) -> None:
             made = np.asarray(pixels(picture, SensorLook(seen, {}, pose, pose, np.zeros(3), 0, 0, 0.0)), np.uint8)
             if kind == "depth":
                 found[index] = depth_m(made)
             else:
                 found[index] = made[..., 2::-1] if kind == "rgb" else made[..., 2]
+
+        self._look(asked, measure, side_by_side=kind != "rgb")  # all processors make a coloured picture
         return found
 
     # -- what they see -------------------------------------------------------------------------------------------------
 
-    def moments(
-        self, table: BodyTable, chosen: I32, slot: int | None, transform: F64, colours: U8 | None, now_s: F64
-    ) -> Iterator[Moment]:
-        """Yield worlds (K,) one after the other, their bodies put into the scene: each is to be looked at at once.
+    def _look(self, asked: Asked, measure: Callable[[int, Seen, Transform], None], *, side_by_side: bool) -> None:
+        """Call ``measure`` for each world with its number, what is seen, and the pose of the sensor.
 
-        ``transform`` (K, 6) is where the sensor is: relative to the body in ``slot``, or in the world without one.
-        ``colours`` (K, L) are those of the lights, None where their colour cannot be seen.
+        ``side_by_side``: several threads take worlds, each with a caster of its own.
 
         Raises:
             UserError: a body was not made by `Worlds.spawn`.
         """
-        self._refuse_unknown(table, chosen)
-        base = self._scene()
-        for first in range(0, len(chosen), _TOGETHER):
-            part = slice(first, first + _TOGETHER)
-            poses, begins, bodies = self._gathered(table, chosen[part], slot, transform[part])
-            for row in range(len(chosen[part])):
-                own = slice(begins[row], begins[row + 1])
-                instances = Instances(*(column[own] for column in bodies))
-                base.caster.pose(instances)
-                seen = base._replace(instances=instances, now_s=float(now_s[first + row]))
-                if colours is not None:
-                    seen = self._lit(seen, colours[first + row])
-                pose = Transform(Vector3D(*poses[row, :3].tolist()), Rotation(*poses[row, 3:].tolist()))
-                yield Moment(first + row, seen, pose)
+        self._refuse_unknown(asked.table, asked.chosen)
+        base, count = self._scene(), len(asked.chosen)
+        if self._parts is None:
+            self._parts = PartRows.of(self._descriptions, actor_meshes())
+        lit = [self._lit(base, row) for row in asked.colours] if asked.colours is not None else [base] * count
+        spare: list[Caster] = []
+
+        def work(start: int, stop: int) -> None:
+            caster = base.caster if not (side_by_side and isinstance(base.caster, EmbreeCaster)) else spare.pop()
+            for first in range(start, stop, _TOGETHER):
+                part = slice(first, min(stop, first + _TOGETHER))
+                poses, begins, bodies = self._gathered(asked, part)
+                for row, pose in enumerate(poses.tolist()):
+                    own = slice(begins[row], begins[row + 1])
+                    instances = Instances(*(column[own] for column in bodies))
+                    caster.pose(instances)
+                    seen = lit[first + row]._replace(
+                        caster=caster, instances=instances, now_s=float(asked.now_s[first + row])
+                    )
+                    measure(first + row, seen, Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])))
+            spare.append(caster)
+
+        if side_by_side and isinstance(base.caster, EmbreeCaster):
+            self._grow_casters(base.caster)
+            spare += self._casters
+            in_stretches(count, work, multiple=1, fewest=_FEWEST)
+        else:
+            work(0, count)
+
+    def _grow_casters(self, caster: EmbreeCaster) -> None:
+        """Make a caster for each thread, and the trees of all bodies."""
+        assert self._parts is not None
+        caster.build_trees(self._parts.mesh)
+        while len(self._casters) < processors():
+            self._casters.append(caster.sibling())
 
     def _scene(self) -> Seen:
         """Return the map without bodies; it is built at the first call."""
@@ -218,10 +243,9 @@ class WorldsSensors:
         states = self._lights.of(self._episode)
         return seen._replace(object_lights=states.lights, object_light_colour=states.colour)
 
-    def _gathered(
-        self, table: BodyTable, chosen: I32, slot: int | None, transform: F64
-    ) -> tuple[F64, NDArray[np.intp], Instances]:
-        """Return the poses (K, 6) of sensors in worlds (K,), and all bodies with where each world's begin (K + 1,)."""
+    def _gathered(self, asked: Asked, part: slice) -> tuple[F64, NDArray[np.intp], Instances]:
+        """Return the poses (K, 6) of sensors in some worlds, and all bodies with where each world's begin (K + 1,)."""
+        table, slot, chosen, transform = asked.table, asked.slot, asked.chosen[part], asked.transform[part]
         flat, slots = table.state.reshape(-1), table.state.shape[1]
         alive = table.state["alive"][chosen] & (table.state["kind"][chosen] != NO_BODY)
         world, own_slot = np.nonzero(alive)
@@ -236,8 +260,7 @@ class WorldsSensors:
             len(poses), poses, relative, parent, moved_by, flat["position"], flat["rotation"], flat["velocity"],
             flat["angular_velocity"], flat["acceleration"], np.zeros((len(poses), 15), np.float32),
         )  # fmt: skip
-        if self._parts is None:
-            self._parts = PartRows.of(self._descriptions, actor_meshes())
+        assert self._parts is not None
         parts = _parts_of(self._parts, self.described[chosen][alive].astype(np.intp))
         motion = Motion(
             matrices(poses[: len(rows)]),
