@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from basu.gym import Reward
 from basu.metrics.delays import SLOWEST_MPS
 from linden.errors import UserError as LindenUserError
 from linden.physics.state import BODY
+from linden_gym import ID
 from linden_gym.environment import WorldsVectorEnv
 from linden_gym.starts import LAST_M
 
@@ -186,3 +188,8 @@ def test_states_that_cannot_be_set_are_a_sentence(envs: WorldsVectorEnv, states:
     with pytest.raises(LindenUserError, match="not a finite place"):
         envs.worlds.set_state(lost)
     assert envs.worlds.state.tobytes() == before
+
+
+def test_one_environment_through_the_client_refuses_other_beginnings() -> None:
+    with pytest.raises(UserError, match=r"start_m needs gymnasium\.make_vec"):
+        gymnasium.make(ID, start_m=100.0)
