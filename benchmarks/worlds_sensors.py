@@ -6,8 +6,8 @@ Each world has two cars and a walker. A lidar has 16 channels of 64 rays, pictur
 best of all rounds. The last column counts the seconds of all processors that this process took, in place of time: what
 the machine does beside is not in it.
 
-The limit is "raw" of ``rays.py``: Embree's own call on packets that lie ready in memory, with the rays of a lidar and of
-a camera in one of these worlds. The peer is a sensor of the server: the same car, one measurement after the other.
+The limit is "raw" of ``rays.py``: Embree's own call on packets that lie ready in memory, with the rays of a lidar and
+of a camera in one of these worlds. The peer is a sensor of the server: the same car, one measurement after the other.
 With ``--device cuda`` NVIDIA Warp casts the rays, and the first two worlds are compared with those of the processor.
 It needs ``pip install 'linden[gpu]'``.
 """

@@ -53,7 +53,7 @@ UNKNOWN = -1
 
 MOST_BYTES = 4 * 2**30
 _TOGETHER = 64
-"""Worlds whose bodies are gathered at once: more take memory and are no faster."""
+"""Worlds: the bodies of so many are gathered at once. More take memory and are no faster."""
 _FEWEST = 8
 """Worlds that a thread takes at least."""
 
@@ -298,7 +298,7 @@ class WorldsSensors:
         if len(where):
             raise UserError(
                 f"the body in slot {where[0][1]} of world {chosen[where[0][0]]} was not made by `spawn`, so it has no "
-                "look; sensors need worlds whose bodies were spawned"
+                "look; leave that world out, or spawn the body"
             )
 
 

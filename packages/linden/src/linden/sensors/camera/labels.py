@@ -41,7 +41,8 @@ def depth_m(image: U8) -> F32:
     """Return the metres (height, width) that a depth picture says."""
     blue, green, red = (image[..., channel].astype(np.uint32) for channel in range(3))
     code = red | green << np.uint32(8) | blue << np.uint32(16)
-    return (code * (FAR_M / _DEPTH_STEPS)).astype(np.float32)
+    metres: F32 = (code * (FAR_M / _DEPTH_STEPS)).astype(np.float32)
+    return metres
 
 
 def semantic(spec: CameraSpec, hits: Hits, seen: Seen) -> U8:

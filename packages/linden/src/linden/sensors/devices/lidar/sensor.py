@@ -52,7 +52,8 @@ def scan(
 
     Returns how many points each channel has, the points (M, 4), and the ray (M,) of each.
     """
-    dice, rays = dice_of(losses.seed, number), np.arange(fired.rays, dtype=np.int32)
+    dice = dice_of(losses.seed, number)
+    rays: I32 = np.arange(fired.rays, dtype=np.int32)
     if losses.general_rate > 0.0:
         rays = rays[dice.random(len(rays), np.float32) >= losses.general_rate]
     hits = caster.closest(aim(fired, rays, pose), fan.range_m, coherent=True, outer=True)
