@@ -60,8 +60,8 @@ class Drives:
     def begin(self, rows: NDArray[np.int64], from_m: NDArray[np.float64]) -> None:
         """Begin the drives of vehicles (K,) anew, at places (K,) along the route; their first frame is the next.
 
-        A drive that begins on the way counts as one that has obeyed all before: it has stopped at the signs behind it,
-        and has the time that the rest of the route may take.
+        A drive that begins on the way counts as one that has obeyed all before. It has stopped at the signs behind it.
+        It has the time that the rest of the route may take.
         """
         self.table[rows] = begun(from_m, self._limit_s - from_m / SLOWEST_MPS)
         self.infractions[rows], self._settled[rows] = 0, 0

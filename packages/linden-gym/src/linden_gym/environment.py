@@ -141,8 +141,8 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
     ) -> tuple[Observations, Infos]:
         """Begin an episode in every environment, or in those of ``options["reset_mask"]``, an array (N,) of bools.
 
-        ``options["start_m"]``, an array (N,) or a number, is where along the route these episodes begin, in place of
-        the setting of that name. ``seed`` seeds the places that are drawn; nothing else is random.
+        These episodes begin at ``options["start_m"]`` along the route, an array (N,) or a number, where it is given.
+        It overrides the setting of that name. ``seed`` seeds the places that are drawn; nothing else is random.
 
         Raises:
             UserError: the seeds, the mask or the places cannot be used; no world has changed then.

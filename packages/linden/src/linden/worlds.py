@@ -339,7 +339,8 @@ class Worlds:
     ) -> LidarScans:
         """Return what a lidar measures in each of ``worlds`` (K,): the sweep of one step, from ``start_deg`` on.
 
-        ``transform``, (6,) or (K, 6), is its place in m and degrees: on the body in ``slot``, or in the world for None.
+        ``transform``, (6,) or (K, 6), is its place in m and degrees. It counts from the body in ``slot``; for None it
+        counts from the world's origin.
         ``attributes`` are those of CARLA's ``sensor.lidar.ray_cast``. Their defaults are CARLA's but for
         ``rotation_frequency``, with which a step is a whole turn. The noise changes in each step; its seed is
         ``noise_seed`` and the number of the world together.
@@ -365,9 +366,9 @@ class Worlds:
     ) -> NDArray[np.float32] | NDArray[np.uint8]:
         """Return what a camera shows in each of ``worlds`` (K,).
 
-        Of ``kind`` "depth" they are (K, H, W) in m. "semantic" are (K, H, W) tags of CARLA, "rgb" (K, H, W, 3) bytes.
-        ``size`` is width and height in pixels, ``fov`` the angle across in degrees. ``transform`` and ``slot`` are as
-        for :meth:`lidar`; ``attributes`` are those of CARLA's camera of that kind.
+        Depth is (K, H, W) in m. Semantic pictures are (K, H, W) tags of CARLA. Pictures of ``kind`` "rgb" are
+        (K, H, W, 3) bytes. ``size`` is width and height in pixels, ``fov`` the angle across in degrees.
+        ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of that kind.
 
         Raises:
             UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.

@@ -205,7 +205,7 @@ class WorldsSensors:
                 poses, begins, bodies = self._gathered(asked, part)
                 for row, pose in enumerate(poses.tolist()):
                     own = slice(begins[row], begins[row + 1])
-                    instances = Instances(*(column[own] for column in bodies))
+                    instances = Instances._make(column[own] for column in bodies)
                     caster.pose(instances)
                     seen = lit[first + row]._replace(
                         caster=caster, instances=instances, now_s=float(asked.now_s[first + row])
