@@ -367,7 +367,7 @@ class Worlds:
         """Return what a camera shows in each of ``worlds`` (K,).
 
         Depth is (K, H, W) in m. Semantic pictures are (K, H, W) tags of CARLA. Pictures of ``kind`` "rgb" are
-        (K, H, W, 3) bytes. ``size`` is width and height in pixels, ``fov`` the angle across in degrees.
+        (K, H, W, 3) bytes. Their ``size`` is width and height in pixels, ``fov`` the angle across in degrees.
         ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of that kind.
 
         Raises:
