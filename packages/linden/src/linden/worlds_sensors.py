@@ -137,7 +137,8 @@ class WorldsSensors:
         Raises:
             UserError: there is no such attribute, or it takes no such value; or the sweeps need too much memory.
         """
-        description = _described(LIDAR, {"rotation_frequency": 1.0 / interval_s} | attributes)
+        whole_turn: dict[str, Value] = {"rotation_frequency": 1.0 / interval_s}
+        description = _described(LIDAR, whole_turn | attributes)
         fan, losses = read_fan(description), read_losses(description)
         fired = fire(fan, start_deg, interval_s)
         shape = len(asked.chosen), len(fired.up), len(fired.sine)
