@@ -33,7 +33,12 @@ from linden.world import World
 from linden.worlds import Worlds
 
 CHANNELS, STEPS, SIDE_PX, FAR_M = 16, 64, 64, 100.0
-LIDAR = {"channels": CHANNELS, "points_per_second": CHANNELS * STEPS * 20, "range": FAR_M, "dropoff_general_rate": 0.0}
+LIDAR: dict[str, Any] = {
+    "channels": CHANNELS,
+    "points_per_second": CHANNELS * STEPS * 20,
+    "range": FAR_M,
+    "dropoff_general_rate": 0.0,
+}
 ON_ROOF = [0.0, 0.0, 2.4, 0.0, 0.0, 0.0]
 KINDS = ("lidar", "depth", "semantic", "rgb")
 RAYS = {"lidar": CHANNELS * STEPS, "depth": SIDE_PX**2, "semantic": SIDE_PX**2, "rgb": SIDE_PX**2}

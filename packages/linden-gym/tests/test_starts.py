@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from basu.errors import UserError
-from basu.gym import Reward
+from basu.gym_spaces import Reward
 from basu.metrics.delays import SLOWEST_MPS
 from linden.errors import UserError as LindenUserError
 from linden.physics.state import BODY

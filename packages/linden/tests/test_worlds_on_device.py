@@ -17,7 +17,7 @@ def _why_not() -> str:
         return f"needs the extra gpu: {', '.join(missing)} is not installed"
     from numba import cuda  # noqa: PLC0415 - loads the driver
 
-    return "" if cuda.is_available() else "there is no CUDA device"
+    return "" if cuda.is_available() else "there is no CUDA device"  # type: ignore[no-untyped-call] # numba has no hints
 
 
 @pytest.mark.skipif(bool(_why_not()), reason=_why_not() or "a GPU is there")

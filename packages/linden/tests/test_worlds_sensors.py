@@ -26,7 +26,13 @@ CAR, SHUTTLE, WALKER, CONE = (
     "static.prop.trafficcone01",
 )
 ON_ROOF = [0.5, 0.1, 2.2, -3.0, 5.0, 0.0]
-LIDAR = {"channels": 8, "points_per_second": 8 * 90 * 20, "range": 60.0, "noise_stddev": 0.02, "noise_seed": 7}
+LIDAR: dict[str, Any] = {
+    "channels": 8,
+    "points_per_second": 8 * 90 * 20,
+    "range": 60.0,
+    "noise_stddev": 0.02,
+    "noise_seed": 7,
+}
 DRIVEN = 30
 
 
@@ -85,7 +91,8 @@ def measured(maps: MapLibrary, actors: list[tuple[str, list[float]]]) -> dict[st
         server.spawn(ActorDescription(0, name, given(asked)), place, parent_id=car.id).stream_id
         for name, asked in sensors.items()
     ]
-    bodies, found = server.episode.bodies, {}
+    bodies = server.episode.bodies
+    found: dict[str, Any] = {}
     for _ in range(DRIVEN):
         bodies.set_control(0, VehicleControl(0.6, 0.0, 0.0))
         bodies.set_walker_control(2, WalkerControl(Vector3D(y=1.0), 1.4))
