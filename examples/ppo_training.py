@@ -5,10 +5,12 @@ usage: python examples/ppo_training.py [--actions 1500000] [--worlds 256] [--see
 It needs ``pip install linden-gym 'basu[sb3]'``, and writes policy.npz, curve.csv and curve.png. Then
 ``PPO_POLICY=ppo/policy.npz basu run examples/ppo_agent.py`` drives the policy through the server, as any agent.
 
-The same seed gives the same policy on the same machine. The reward is that of the environment, and two things help to
-learn it. The weights of discomfort and offset grow from 0 to their own values, because a driver that still tries at
-random is never comfortable, and would learn to stand. Driving too fast to stop at a stop sign costs something long
-before the line. A driver that stops there in comfort pays nothing.
+The same seed gives the same policy on the same machine. The reward is that of the environment, and four things help to
+learn it. Most episodes begin at random places along the route, so that a driver sees all of it from the start. The
+weights of discomfort and offset, and the cost of an early end, grow to their own values once the driver knows the way:
+a driver that still tries at random is never comfortable, and would learn to stand. An episode ends when the vehicle has
+stood for 5 s. Driving too fast to stop at a stop sign costs something long before the line, and a driver that stops
+there in comfort pays nothing. The drives that choose the policy are without help, from the route's beginning.
 PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".
 """
 
@@ -30,16 +32,20 @@ from stable_baselines3.common.vec_env import VecEnv, VecNormalize
 from basu.conditions import STEP_S
 from basu.gym import Reward
 from linden_gym import ID
+from linden_gym.starts import LAST_M
 
-OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 100
-ROUGH_SHARE, COMFORT_SHARE = 0.2, 0.4  # of the training without these weights, and while they grow
+OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 25
+AWAY_SHARE = 0.8  # of the episodes, which begin at a random place of the route
+KNOWN_SHARE = 0.85  # of the rest of the route, which is driven in the mean before the weights grow
+COMFORT_SHARE = 0.4  # of the training, in which the weights grow from 0 to their own values
+FIRST_FAILURE = 0.2  # of the cost of an early end, before it grows
 TOO_FAST = -0.5  # for a second with 1 m/s more than `fastest_mps`
 BRAKING_MPS2, BEFORE_LINE_M = 0.8, 1.0
 GAMMA = 0.995
 SETTINGS = {"n_steps": 64, "batch_size": 2048, "n_epochs": 6, "gamma": GAMMA, "policy_kwargs": {"log_std_init": -0.7}}
 FASTEST_LEARNING, SLOWEST_LEARNING = 6e-4, 3e-5
 TRIED_EVERY = 5  # rollouts, from one drive without chance to the next, once the reward is whole
-COLUMNS = ("actions", "episodes", "episode_return", "route_share", "infractions", "tried_return", "seconds")
+COLUMNS = ("actions", "episodes", "episode_return", "route_share", "infractions", "comfort", "tried_return", "seconds")
 
 
 # -- the task
@@ -53,13 +59,15 @@ def fastest_mps(to_line_m):
 class TrainingWorlds(VecEnv):
     """The environments `linden/Shuttle-v0` as Stable-Baselines3 wants them; an action holds for `HELD_STEPS` steps.
 
-    To save time, an episode ends as a failure once the vehicle has left its lane, stands for 20 s, or commits an
-    infraction. ``ended`` has the return, the share of the route and the infractions of each episode that ended.
+    To save time, an episode ends as a failure once the vehicle has left its lane, stands for 5 s, or commits an
+    infraction. ``ended`` has for each episode that ended: the return, the share of the way from its beginning to the
+    route's end, and the infractions.
     """
 
     render_mode = None
 
-    def __init__(self, count, reward):
+    def __init__(self, count, reward, seed):
+        self.dice = np.random.default_rng(seed)
         self.worlds = gymnasium.make_vec(ID, num_envs=count, autoreset_mode="Disabled", reward=reward)
         self.length_m, self.failure = self.worlds.unwrapped.route.length_m, reward.failure
         self.comfort, self.ended = 0.0, []
@@ -69,7 +77,16 @@ class TrainingWorlds(VecEnv):
     def _begun(self, count):
         self.returns, self.infractions, self.stood = (np.zeros(count) for _ in range(3))
         self.applied = np.zeros((count, 2), np.float32)
-        return self.worlds.reset()[0], self.applied
+        self.began_m = np.zeros(count)
+        return self._begin(np.ones(count, np.bool_)), self.applied
+
+    def _begin(self, mask):
+        """Begin episodes, most of them at random places; return the observations."""
+        away = self.dice.random(len(mask)) < AWAY_SHARE
+        places_m = away * self.dice.uniform(0.0, self.length_m - LAST_M, len(mask))
+        seen, told = self.worlds.reset(options={"reset_mask": mask, "start_m": places_m})
+        self.began_m = np.where(mask, told["route_s_m"], self.began_m)
+        return seen
 
     def reset(self):
         return rows(*self._begun(self.num_envs))
@@ -87,7 +104,7 @@ class TrainingWorlds(VecEnv):
             gives_up = (np.abs(offset_m) > OFF_LANE_M) | (self.stood > STANDING_ACTIONS * HELD_STEPS)
             gives_up |= told["infractions"] > 0
             gives_up &= ~(terminated | truncated)
-            reward = reward + self._help(seen, told) + np.where(gives_up, self.failure, 0.0)
+            reward = reward + self._help(seen, told) + np.where(gives_up, self.failure * self._harshness(), 0.0)
             rewards += np.where(over, 0.0, reward)  # what an action that goes on does at a new beginning is not counted
             self.infractions += np.where(over, 0, told["infractions"])
             ends = terminated | truncated | gives_up
@@ -95,14 +112,18 @@ class TrainingWorlds(VecEnv):
                 last = rows(seen, self.applied)
                 for row in np.flatnonzero(ends & ~over):
                     infos[row] = {"terminal_observation": last[row], "TimeLimit.truncated": bool(truncated[row])}
-                    share = told["route_s_m"][row] / self.length_m
+                    share = (told["route_s_m"][row] - self.began_m[row]) / (self.length_m - self.began_m[row])
                     self.ended.append((self.returns[row] + rewards[row], share, self.infractions[row]))
                 over |= ends
                 self.stood[ends] = 0
-                seen, _ = self.worlds.reset(options={"reset_mask": ends})
+                seen = self._begin(ends)
         self.returns = np.where(over, 0.0, self.returns + rewards)
         self.infractions[over], self.applied[over] = 0, 0.0
         return rows(seen, self.applied), rewards, over, infos
+
+    def _harshness(self):
+        """Return the share of the cost of an early end that counts now."""
+        return FIRST_FAILURE + (1.0 - FIRST_FAILURE) * self.comfort
 
     def _help(self, seen, told):
         """Return what the training adds to the reward of a step."""
@@ -159,14 +180,17 @@ class Curve(BaseCallback):
 
     def _on_rollout_end(self):
         done = self.num_timesteps / self.actions
-        self.worlds.comfort = min(1.0, max(0.0, (done - ROUGH_SHARE) / COMFORT_SHARE))
+        ended, self.worlds.ended = self.worlds.ended, []
         self.rollouts += 1
         tried = ""
         if (self.worlds.comfort == 1.0 and self.rollouts % TRIED_EVERY == 0) or done >= 1.0:
             tried = f"{self._try():.2f}"
-        ended, self.worlds.ended = self.worlds.ended, []
+        if ended and np.mean([share for _, share, _ in ended]) >= KNOWN_SHARE:
+            grown = (self.num_timesteps / self.rollouts) / (COMFORT_SHARE * self.actions)
+            self.worlds.comfort = min(1.0, self.worlds.comfort + grown)
         means = [f"{mean:.3f}" for mean in np.mean(ended, axis=0)] if ended else ["", "", ""]
-        row = [self.num_timesteps, len(ended), *means, tried, f"{time.perf_counter() - self.began_s:.1f}"]
+        comfort, seconds = f"{self.worlds.comfort:.3f}", f"{time.perf_counter() - self.began_s:.1f}"
+        row = [self.num_timesteps, len(ended), *means, comfort, tried, seconds]
         self.table.writerow(row)
         self.file.flush()
         print("  ".join(f"{name} {value}" for name, value in zip(COLUMNS, row, strict=True) if value != ""), flush=True)
@@ -191,7 +215,7 @@ def train(actions, count, seed, folder, reward=Reward(), **settings):  # noqa: B
     """Train for so many actions of ``count`` worlds together; write policy.npz, curve.csv and curve.png."""
     torch.set_num_threads(1)
     folder.mkdir(parents=True, exist_ok=True)
-    worlds = TrainingWorlds(count, reward)
+    worlds = TrainingWorlds(count, reward, seed)
     environments = VecNormalize(worlds, gamma=GAMMA)
     usual = SETTINGS | {"learning_rate": lambda left: max(SLOWEST_LEARNING, FASTEST_LEARNING * left)}
     model = PPO("MlpPolicy", environments, seed=seed, device="cpu", **usual | settings)

@@ -78,7 +78,12 @@ def main() -> None:
     gpu.download(there, valid, frames)
     if there.state[1].tobytes() != first.state[1].tobytes() or there.state[0].tobytes() != here.state[0].tobytes():
         say("reset: other rows")
+    kept = there.state[0, 1].tobytes()
     say(f"frames {frames.tolist()}")
+    gpu.set_state(np.array([0], np.int32), first.state[0, :1])
+    gpu.download(there, valid, frames)
+    if there.state[0, 0].tobytes() != first.state[0, 0].tobytes() or there.state[0, 1].tobytes() != kept:
+        say("set_state: other rows")
 
 
 if __name__ == "__main__":

@@ -113,13 +113,16 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self,
         *,
         seed: int | None = None,
-        options: dict[str, Any] | None = None,  # noqa: ARG002 - gymnasium's signature
+        options: dict[str, Any] | None = None,
     ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
         """Begin an episode; all that is random in it comes from ``seed``, or from the last seed that was given.
 
         Raises:
+            UserError: ``options`` names a place to begin at, which only `linden_gym` has.
             SimulatorError: the simulator failed.
         """
+        if options and "start_m" in options:
+            raise UserError("through the client a drive begins at the route's beginning; start_m is of `linden_gym`")
         super().reset(seed=seed)
         drawn = seed if seed is not None else int(self.np_random.integers(2**31))
         self.episode.reset(drawn)

@@ -8,7 +8,7 @@ import numpy as np
 
 from basu.conditions import STEP_S
 from basu.metrics.collisions import is_separate
-from basu.metrics.delays import time_limit_s
+from basu.metrics.delays import SLOWEST_MPS, time_limit_s
 from basu.metrics.ending import GOES_ON
 from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.speeding import exceeds, holding_mps, is_whole, lasts
@@ -50,19 +50,23 @@ class Drives:
         self._limit_s = time_limit_s(route)
         self._ahead = ahead
         self._middle_m = (vehicle.front_m - vehicle.rear_m) / 2.0
-        self.table = begun(count)
+        self.table = begun(np.zeros(count), np.full(count, self._limit_s))
         self.infractions = np.zeros(count, np.int64)
         self._speeding = np.zeros(count, EPISODE)
         self._settled = np.zeros(count, np.int64)  # infractions that can change no more
         self.stopped, self._passed = (np.zeros((count, len(ahead.signs_m)), np.bool_) for _ in range(2))
         self._touched = np.full((count, SCENERY_KINDS + 1), LONG_AGO, np.int64)
 
-    def begin(self, rows: NDArray[np.int64]) -> None:
-        """Begin the drives of vehicles anew; their first frame is the next."""
-        self.table[rows] = begun(len(rows))
+    def begin(self, rows: NDArray[np.int64], from_m: NDArray[np.float64]) -> None:
+        """Begin the drives of vehicles (K,) anew, at places (K,) along the route; their first frame is the next.
+
+        A drive that begins on the way counts as one that has obeyed all before. It has stopped at the signs behind it.
+        It has the time that the rest of the route may take.
+        """
+        self.table[rows] = begun(from_m, self._limit_s - from_m / SLOWEST_MPS)
         self.infractions[rows], self._settled[rows] = 0, 0
         self._speeding[rows] = np.zeros((), EPISODE)
-        self.stopped[rows], self._passed[rows] = False, False
+        self.stopped[rows], self._passed[rows] = self._ahead.to_signs_m(from_m) < 0.0, False
         self._touched[rows] = LONG_AGO
 
     @property
@@ -89,7 +93,7 @@ class Drives:
         judge(
             self.table, rows, before_s_m, self._route.s_m, self._route.yaw_rad, self._widths_m,
             ego.x_m, ego.y_m, ego.yaw_rad, ego.velocity_x_mps, ego.velocity_y_mps, speed_mps,
-            off_lane_m, same_side, self._limit_s,
+            off_lane_m, same_side,
         )  # fmt: skip
         self._settled[rows] += self._new_contacts(rows, contacts) + self._signs_run(rows, speed_mps)
         self.infractions[rows] = self._speeding_until_now(rows, speed_mps, limit_mps) + self._settled[rows]

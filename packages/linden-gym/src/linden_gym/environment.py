@@ -15,7 +15,6 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from basu.conditions import STEP_S
-from basu.episode.world import DROP_M, SETTLE_TICKS
 from basu.errors import UserError
 from basu.gym import route_spec
 from basu.gym_spaces import (
@@ -36,10 +35,10 @@ from basu.records.history.model import NEAR_M
 from basu.routing import ControlKind, plan
 from linden.errors import LindenError
 from linden.physics.state import NO_BODY, PROP
-from linden.simulation.episode import DEFAULT_SPEED_LIMIT_KMH
 from linden.worlds import Worlds
 from linden_gym.drives import Drives
 from linden_gym.lane_field import LaneField
+from linden_gym.starts import Starts, settled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,12 +78,16 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         vehicle: str | None = None,
         reward: Reward | None = None,
         with_scenarios: bool = True,
+        start_m: float | tuple[float, float] = 0.0,
         device: str = "cpu",
         threads: int = 0,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
     ) -> None:
         """Make the worlds and plan the route. ``threads`` work on them, 0 being all processors.
+
+        ``start_m`` is where along the route episodes begin, or between which two places they begin at random
+        (`linden_gym.starts`).
 
         Raises:
             UserError: a setting cannot be used, or the route needs what these environments lack.
@@ -102,8 +105,9 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
             carla_map = carla.Map(spec.town, self.worlds.map.text)
             self.route = plan(carla_map, spec.description(carla_map))
             _refuse_what_is_missing(spec, self.route)
-            self._limits_kmh = np.full(num_envs, DEFAULT_SPEED_LIMIT_KMH)
-            self._put_at_start(spec.config.vehicle)
+            self._limits_kmh = settled(self.worlds, spec.config.vehicle, self.route.waypoints[:1])
+            self._starts = Starts(self.route, self.worlds.map, spec.config.vehicle)
+            self._start_m = self._starts.range_m(start_m)
         except LindenError as error:
             raise UserError(str(error)) from error
         self._first_limits_kmh = self._limits_kmh.copy()
@@ -121,19 +125,6 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self._over = np.ones(num_envs, np.bool_)  # environments with no episode
         self._reported = np.zeros(num_envs, np.int64)  # infractions
 
-    def _put_at_start(self, vehicle: str) -> None:
-        """Put the vehicle at rest at the beginning of the route, as a run does, in every world."""
-        pose = self.route.waypoints[0].transform
-        pose.location.z += DROP_M
-        at, turned = pose.location, pose.rotation
-        slot = self.worlds.spawn(vehicle, [at.x, at.y, at.z, turned.pitch, turned.yaw, turned.roll])
-        assert slot == EGO, "it is the first"
-        self.worlds.set_controls([0.0, 0.0, 1.0])
-        for _ in range(SETTLE_TICKS + 1):
-            self.worlds.step()
-            self.worlds.heed_limits(self._limits_kmh)
-        self.worlds.keep()
-
     def _box(self) -> Vehicle:
         """Return the box of the vehicle under test as records have it, of numbers of 32 bits."""
         body = self.worlds.state[0, EGO]
@@ -150,10 +141,11 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
     ) -> tuple[Observations, Infos]:
         """Begin an episode in every environment, or in those of ``options["reset_mask"]``, an array (N,) of bools.
 
-        ``seed`` is kept for `np_random`. An episode draws no random number: the same actions give the same drive.
+        These episodes begin at ``options["start_m"]`` along the route, an array (N,) or a number, where it is given.
+        It overrides the setting of that name. ``seed`` seeds the places that are drawn; nothing else is random.
 
         Raises:
-            UserError: the seeds or the mask cannot be used.
+            UserError: the seeds, the mask or the places cannot be used; no world has changed then.
         """
         if isinstance(seed, (int, np.integer)):
             super().reset(seed=int(seed))
@@ -164,8 +156,10 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
             mask = np.ones(self.num_envs, np.bool_)
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (self.num_envs,):
             raise UserError(f"reset_mask needs an array ({self.num_envs},) of bools, not {mask!r}")
+        places_m = None if options is None else options.get("start_m")
+        from_m = None if places_m is None else self._starts.places_m(places_m, self.num_envs)
         if mask.any():
-            self._begin(np.flatnonzero(mask))
+            self._begin(np.flatnonzero(mask), from_m)
         infos: Infos = {}
         self._tell(infos, mask, route_s_m=self._drives.table["s_m"].copy(), infractions=self._all * 0)
         return self._observed(self._all), infos
@@ -267,12 +261,17 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
 
     # -- the worlds
 
-    def _begin(self, rows: NDArray[np.int64]) -> None:
-        """Begin an episode in environments (K,), and take in its first frame."""
+    def _begin(self, rows: NDArray[np.int64], from_m: NDArray[np.float64] | None = None) -> None:
+        """Begin an episode in environments (K,), at places of ``from_m`` (N,) or drawn ones, with its first frame."""
+        begins_m = self._start_m.draw(self.np_random, len(rows)) if from_m is None else from_m[rows]
         self.worlds.reset(rows)
         self._limits_kmh[rows] = self._first_limits_kmh[rows]
+        away = np.flatnonzero(begins_m > 0.0)
+        if len(away):
+            begins_m[away], states, self._limits_kmh[rows[away]] = self._starts.at(begins_m[away])
+            self.worlds.set_state(states, EGO, rows[away])
         self._look()
-        self._drives.begin(rows)
+        self._drives.begin(rows, begins_m)
         self._drives.advance(rows, self._ego(rows), self._posted_mps(rows), self.worlds.contacts[:0])
         self._reported[rows], self._over[rows] = 0, False
 

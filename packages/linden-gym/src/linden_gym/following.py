@@ -37,6 +37,7 @@ DRIVE = np.dtype(
         ("gaps", "i8"),
         ("gap_m", "f8"),  # all gaps together
         ("moved_tick", "i8"),  # of the latest frame in which the vehicle was not at rest
+        ("limit_s", "f8"),  # time that the drive may take
         ("ending", "i8"),  # of `basu.metrics.ending`
     ],
     align=True,
@@ -59,9 +60,10 @@ _ending_of = part(ending.ending_of)
 _BLOCKED_MPS = delays.BLOCKED_MPS
 
 
-def begun(count: int) -> Any:  # noqa: ANN401 - an array of records
-    """Return the records of drives that have had no frame."""
-    drives = np.zeros(count, DRIVE)
+def begun(s_m: F64, limit_s: F64) -> Any:  # noqa: ANN401 - an array of records
+    """Return the records of drives (K,) that have had no frame, from places (K,) along the route."""
+    drives = np.zeros(len(s_m), DRIVE)
+    drives["s_m"], drives["reached_m"], drives["limit_s"] = s_m, s_m, limit_s
     drives["tick"], drives["valid"], drives["all_beside"] = -1, True, True
     drives["spare_m"] = validity.PASSING_M
     return drives
@@ -124,7 +126,6 @@ def judge(
     speed_mps: F64,
     off_lane_m: F64,
     same_side: NDArray[np.bool_],
-    limit_s: float,
 ) -> None:  # pragma: no cover - compiled
     """Check the frames of vehicles (K,) after `locate`, add their way, and note how drives end.
 
@@ -156,4 +157,4 @@ def judge(
         left_m = route_s_m[-1] - drive.s_m
         arrived = valid and _has_arrived(left_m, speed_mps[k], 0.0, 0.0)
         still_s, t_s = (drive.tick - drive.moved_tick) * STEP_S, drive.tick * STEP_S
-        drive.ending = _ending_of(arrived, drive.gaps, drive.distance_m, still_s, t_s, limit_s, math.inf)
+        drive.ending = _ending_of(arrived, drive.gaps, drive.distance_m, still_s, t_s, drive.limit_s, math.inf)

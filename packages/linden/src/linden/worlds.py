@@ -23,6 +23,7 @@ from linden.physics.vehicle.controls import set_controls
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.sensors.camera.spec import LARGEST_SIDE_PX
 from linden.sensors.casting.thread_pool import in_stretches
 from linden.simulation.below_ground import DEEP_M
 from linden.simulation.episode import limits_of_lanes_kmh
@@ -32,6 +33,7 @@ from linden.simulation.surroundings import scenery_of
 from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
 from linden.world import clock_s, substeps_of
+from linden.worlds_sensors import Asked, LidarScans, Value, WorldsSensors
 
 if TYPE_CHECKING:
     from linden.worlds_gpu import DeviceColumn, GpuWorlds
@@ -93,6 +95,7 @@ class Worlds:
         self._host_is_current = True
         self._limit_of_lane_kmh: F64 | None = None
         self._all = np.arange(self.count, dtype=np.int32)
+        self._sensors = WorldsSensors(self.map, self.count, device)
 
     # -- actors --------------------------------------------------------------------------------------------------------
 
@@ -133,6 +136,7 @@ class Worlds:
                 row = made.table.row_of(design, lambda: prototype.spec(own))  # noqa: B023 - called before the next turn
                 self._table.spec_of[mine, slot] = row
         self._table.counts[chosen] = slot + 1
+        self._sensors.note(chosen, slot, self._table.state.shape[1], description)
         self._keep_as_first(chosen)
         return slot
 
@@ -161,6 +165,31 @@ class Worlds:
         self._edit()
         for world, velocity in zip(chosen.tolist(), wanted.tolist(), strict=True):
             self.bodies(world).set_target_velocity(slot, velocity)
+
+    def set_state(self, states: StructuredArray, slot: int = 0, worlds: Chosen = None) -> None:
+        """Give the bodies in a slot of ``worlds`` (K,) the states (K,) of BODY, as :attr:`state` has them.
+
+        What the body is (kind, specification) stays. So the states must be of bodies that were spawned alike.
+
+        Raises:
+            UserError: the arguments cannot be used; no world has changed then.
+        """
+        chosen = self._chosen(worlds)
+        rows = self._rows(slot, chosen)
+        given = np.asarray(states)
+        if given.dtype != BODY or given.shape != (len(chosen),):
+            raise UserError(f"states needs an array ({len(chosen)},) of BODY, as `state` has, not {_short(states)}")
+        if (given["kind"] != self._table.state["kind"][chosen, slot]).any() or not given["alive"].all():
+            raise UserError(
+                f"a state is of another kind of body than that in slot {slot}; spawn the same actor in both"
+            )
+        if not (np.abs(given["position"]) < FARTHEST_M).all():  # false of nan as well
+            raise UserError("a state has a position that is not a finite place")
+        if self._gpu is not None and self._gpu.is_current:
+            self._gpu.set_state(rows, np.ascontiguousarray(given))
+            self._host_is_current = False
+        else:
+            self._table.state.reshape(-1)[rows] = given
 
     def bodies(self, world: int) -> Bodies:
         """Return the bodies of one world as the server has them: a view, by which everything can be read and set."""
@@ -225,6 +254,7 @@ class Worlds:
         met = [touched[start] for start in sorted(touched) if len(touched[start])]
         self._contacts = np.concatenate(met) if met else np.zeros(0, CONTACT)
         self._frames[running] += 1
+        self._sensors.step(self._table, running, self.dt_s)
         position_m = self._table.state["position"]
         inside = np.abs(position_m) < FARTHEST_M  # false of nan as well
         self._valid[running] = inside.all(axis=(1, 2))[running]
@@ -292,8 +322,83 @@ class Worlds:
         self._table.state[chosen] = np.zeros((), self._table.state.dtype)
         self._table.spec_of[chosen] = 0
         self._table.counts[chosen] = 0
+        self._sensors.forget(chosen)
         self._keep_as_first(chosen)
         self._begin(chosen)
+
+    # -- sensors -------------------------------------------------------------------------------------------------------
+
+    def lidar(
+        self,
+        transform: ArrayLike,
+        *,
+        slot: int | None = 0,
+        worlds: Chosen = None,
+        start_deg: float = 0.0,
+        **attributes: Value,
+    ) -> LidarScans:
+        """Return what a lidar measures in each of ``worlds`` (K,): the sweep of one step, from ``start_deg`` on.
+
+        ``transform``, (6,) or (K, 6), is its place in m and degrees. It counts from the body in ``slot``; for None it
+        counts from the world's origin.
+        ``attributes`` are those of CARLA's ``sensor.lidar.ray_cast``. Their defaults are CARLA's but for
+        ``rotation_frequency``, with which a step is a whole turn. The noise changes in each step; its seed is
+        ``noise_seed`` and the number of the world together.
+
+        Raises:
+            UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
+        """
+        if isinstance(start_deg, bool) or not isinstance(start_deg, (int, float)) or not 0.0 <= start_deg < 360.0:
+            raise UserError(f"start_deg is an angle from 0 to below 360, not {_short(start_deg)}")
+        asked = self._asked(transform, slot, worlds, lit=False)
+        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), asked)
+
+    def pictures(
+        self,
+        kind: str,
+        transform: ArrayLike,
+        *,
+        size: tuple[int, int] = (64, 64),
+        fov: float = 90.0,
+        slot: int | None = 0,
+        worlds: Chosen = None,
+        **attributes: Value,
+    ) -> NDArray[np.float32] | NDArray[np.uint8]:
+        """Return what a camera shows in each of ``worlds`` (K,).
+
+        Depth is (K, H, W) in m. Semantic pictures are (K, H, W) tags of CARLA. Pictures of ``kind`` "rgb" are
+        (K, H, W, 3) bytes. Their ``size`` is width and height in pixels, ``fov`` the angle across in degrees.
+        ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of that kind.
+
+        Raises:
+            UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
+        """
+        try:
+            width, height = size
+        except (TypeError, ValueError):
+            raise UserError(f"size is the width and the height of the pictures, not {_short(size)}") from None
+        for name, side in (("the width", width), ("the height", height)):
+            _whole(name, side, 1, LARGEST_SIDE_PX)
+        asked = self._asked(transform, slot, worlds, lit=kind == "rgb")
+        given = {"image_size_x": width, "image_size_y": height, "fov": fov} | attributes
+        return self._sensors.pictures(kind, given, asked)
+
+    def _asked(self, transform: ArrayLike, slot: int | None, worlds: Chosen, *, lit: bool) -> Asked:
+        """Return which worlds are to be measured, and where the sensors are.
+
+        Raises:
+            UserError: the arguments cannot be used.
+        """
+        chosen = self._chosen(worlds)
+        wanted = _numbers("transform (x, y, z, pitch, yaw, roll)", transform, (len(chosen), 6))
+        if slot is not None:
+            self._rows(slot, chosen)
+        self._read()
+        lost = chosen[~self._valid[chosen]]
+        if len(lost):
+            raise UserError(f"world {lost[0]} is not valid, since a body of it got lost; reset it or leave it out")
+        colours = self.light_colours[chosen] if lit else None
+        return Asked(self._table, chosen, slot, wanted, self.frames[chosen], self.elapsed_s[chosen], colours)
 
     # -- what there is -------------------------------------------------------------------------------------------------
 
@@ -407,6 +512,7 @@ class Worlds:
         self._table.kept = [self._first.spec_of]
 
     def _begin(self, chosen: NDArray[np.int32]) -> None:
+        self._sensors.begin(chosen)
         self._valid[chosen], self._frames[chosen] = True, 0
         self._forget_contacts(chosen)
 

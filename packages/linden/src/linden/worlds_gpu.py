@@ -20,6 +20,7 @@ from linden.physics.contact.statics import Statics
 from linden.physics.state import BODY, VEHICLE_WORK
 from linden.physics.step import GRAVITY_MPS2, begin_frame, run_frame
 from linden.physics.vehicle.controls import set_controls
+from linden.structured import StructuredArray
 
 cuda: Any = numba_cuda
 """What it offers it makes up as it is loaded: nothing of that is typed."""
@@ -110,6 +111,15 @@ def _copy_worlds(
         valid[world], frames[world], found[world] = True, 0, 0
 
 
+@cuda.jit  # type: ignore[untyped-decorator] # numba has no hints for it
+def _copy_bodies(words: OnDevice, rows: OnDevice, given: OnDevice) -> None:  # pragma: no cover - compiled
+    """Copy one word of a given body into its row."""
+    k = cuda.grid(1)
+    if k < len(rows) * given.shape[1]:
+        row, word = k // given.shape[1], k % given.shape[1]
+        words[rows[row], word] = given[row, word]
+
+
 class GpuWorlds:
     """Copies of the tables of worlds on a device.
 
@@ -176,6 +186,12 @@ class GpuWorlds:
         """Set the controls (K, 7) of vehicles in flat rows (K,)."""
         flat = self.state.reshape(self.state.shape[0] * self.state.shape[1])
         _launch(_set_controls, len(rows), flat, cuda.to_device(rows), cuda.to_device(controls))
+
+    def set_state(self, rows: NDArray[np.int32], states: StructuredArray) -> None:
+        """Set the bodies in flat rows (K,) to states (K,) of BODY."""
+        words = self.state.view(np.int64).reshape(self.state.shape[0] * self.state.shape[1], _WORDS)
+        given = cuda.to_device(_words(states))
+        _launch(_copy_bodies, len(rows) * _WORDS, words, cuda.to_device(rows), given)
 
     def reset(self, chosen: NDArray[np.int32]) -> None:
         """Set worlds back to their first state."""

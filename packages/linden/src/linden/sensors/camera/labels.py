@@ -37,6 +37,14 @@ def depth(spec: CameraSpec, hits: Hits, vectors: F32) -> U8:
     return _picture(spec, depth_loop, hits.distance_m, vectors)
 
 
+def depth_m(image: U8) -> F32:
+    """Return the metres (height, width) that a depth picture says."""
+    blue, green, red = (image[..., channel].astype(np.uint32) for channel in range(3))
+    code = red | green << np.uint32(8) | blue << np.uint32(16)
+    metres: F32 = (code * (FAR_M / _DEPTH_STEPS)).astype(np.float32)
+    return metres
+
+
 def semantic(spec: CameraSpec, hits: Hits, seen: Seen) -> U8:
     """Return the semantic tag of each pixel in R."""
     first = first_of_places(seen.faces, seen.instances)

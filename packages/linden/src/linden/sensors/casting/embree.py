@@ -36,8 +36,8 @@ class EmbreeCaster:
 
     device = CPU
 
-    def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
-        """Build the trees.
+    def __init__(self, standing: Mesh, bodies: list[Mesh], *, beside: "EmbreeCaster | None" = None) -> None:
+        """Build the trees, or take those of another caster of the same meshes, ``beside`` which this one is posed.
 
         Raises:
             NoEmbreeError: the library cannot be used here.
@@ -45,11 +45,19 @@ class EmbreeCaster:
         self._library = embree()
         self.width = packet_width()
         self._kernels = build(self.width)
-        self._device = self._library.rtcNewDevice(b"threads=1")
-        self._kept: list[NDArray[Any]] = []  # Embree reads them in place
-        self._bodies = bodies
-        self._trees: dict[int, int] = {}  # of bodies, by their number: built when one of them first comes
-        self._standing = self._built(standing, filtered=False)
+        self._meshes = standing, bodies
+        self._beside = beside  # keeps the trees
+        self._scenes: list[int] = []
+        if beside is None:
+            self._device = self._library.rtcNewDevice(b"threads=1")
+            self._kept: list[NDArray[Any]] = []  # Embree reads them in place
+            self._trees: dict[int, int] = {}  # of bodies, by their number: built when one of them first comes
+            weakref.finalize(self, _release, self._library, self._device, self._scenes)
+            self._standing = self._built(standing, filtered=False)
+            self._scenes.append(self._standing)
+        else:
+            self._device, self._trees, self._standing = beside._device, beside._trees, beside._standing  # noqa: SLF001
+            weakref.finalize(self, _release, self._library, None, self._scenes)
         self.scene: int = self._library.rtcNewScene(self._device)
         # that takes 0.2 ms in each tick, and every ray meets it
         self._library.rtcSetSceneBuildQuality(self.scene, _MEDIUM)
@@ -59,9 +67,17 @@ class EmbreeCaster:
         here = np.array([self._new_instance(self._standing, 0)], np.int64)
         place(here, np.eye(3, 4, dtype=np.float32)[None], self.pose_of)
         self._library.rtcCommitScene(self.scene)
-        self._scenes = [self._standing, self.scene]
-        weakref.finalize(self, _release, self._library, self._device, self._scenes)
+        self._scenes.append(self.scene)
         self._complain()
+
+    def build_trees(self, meshes: I32) -> None:
+        """Build the trees of bodies, so that no thread does so."""
+        for number in np.unique(meshes).tolist():
+            self._tree(number)
+
+    def sibling(self) -> "EmbreeCaster":
+        """Return a caster of the same trees that is posed by itself: for another thread."""
+        return EmbreeCaster(*self._meshes, beside=self)
 
     def _built(self, mesh: Mesh, *, filtered: bool) -> int:
         """Return a scene of the mesh's triangles; ``filtered``, its inner sides are not met by rays that ask for it.
@@ -94,7 +110,7 @@ class EmbreeCaster:
     def _tree(self, number: int) -> int:
         """Return the scene of a body's mesh."""
         if number not in self._trees:
-            self._trees[number] = self._built(self._bodies[number], filtered=True)
+            self._trees[number] = self._built(self._meshes[1][number], filtered=True)
             self._scenes.append(self._trees[number])
         return self._trees[number]
 
@@ -175,7 +191,8 @@ def _flat(rays: Rays) -> tuple[F32, F32]:
     return np.ascontiguousarray(rays.origin_m, np.float32), np.ascontiguousarray(rays.direction, np.float32)
 
 
-def _release(library: ctypes.CDLL, device: int, scenes: list[int]) -> None:
+def _release(library: ctypes.CDLL, device: int | None, scenes: list[int]) -> None:
     for scene in reversed(scenes):
         library.rtcReleaseScene(scene)
-    library.rtcReleaseDevice(device)
+    if device is not None:
+        library.rtcReleaseDevice(device)

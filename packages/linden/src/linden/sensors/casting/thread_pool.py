@@ -10,7 +10,7 @@ from concurrent.futures import Future
 from functools import lru_cache
 from itertools import count
 from queue import SimpleQueue
-from threading import Thread
+from threading import Thread, local
 from typing import TypeAlias
 
 from linden.background import carry_out
@@ -19,6 +19,8 @@ Task: TypeAlias = tuple[Callable[[], None], "Future[None]"]
 
 FEWEST = 512
 """Rays; a shorter stretch costs more to hand out than to work on."""
+
+_here = local()  # .works: whether this thread works on a stretch
 
 _STRETCHES = 4  # for each thread, so that one that met much to do is not waited for long
 
@@ -49,19 +51,24 @@ def in_stretches(
 
     No stretch but the last is shorter than ``fewest``. At most ``threads`` work, 0 being all processors.
 
-    ``work`` has to let go of Python's lock, and to do the same for each number whatever the stretch it is in.
+    ``work`` has to let go of Python's lock, and to do the same for each number whatever the stretch it is in. What it
+    asks for in stretches itself is done by its own thread.
     """
     hands = min(threads, processors()) or processors()
     length = -(-max(fewest, -(-total // (hands * _STRETCHES))) // multiple) * multiple
-    if hands == 1 or total <= length:
+    if hands == 1 or total <= length or getattr(_here, "works", False):
         if total:
             work(0, total)
         return
     turn = count()
 
     def take() -> None:
-        while (start := next(turn) * length) < total:
-            work(start, min(total, start + length))
+        _here.works = True
+        try:
+            while (start := next(turn) * length) < total:
+                work(start, min(total, start + length))
+        finally:
+            _here.works = False
 
     helpers = [Future[None]() for _ in range(min(hands, -(-total // length)) - 1)]
     for helper in helpers:

@@ -1,16 +1,19 @@
 """The actors that can be seen, as bodies for a caster: every part of each of them in its place, in a few operations."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.blueprints.library import BlueprintKind
+from linden.protocol.values.actors import ActorDescription
 from linden.scenery.actors.posing import VEHICLE_FRAMES, WALKER_FRAMES, posed_frames, vehicle_frames, walker_frames
 from linden.scenery.mesh import LampOf
 from linden.sensors.casting.caster import Instances
 from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.bones import bones_of
+from linden.structured import StructuredArray
 
 if TYPE_CHECKING:
     from linden.scenery.actors.actor_meshes import BlueprintMeshes
@@ -39,20 +42,82 @@ _LAMPS_OF_BIT = {
 _BLINKING = np.uint32(1 << LampOf.BLINKER_LEFT | 1 << LampOf.BLINKER_RIGHT)
 
 
+class PartRows(NamedTuple):
+    """The parts (K,) of actors, all parts of an actor side by side."""
+
+    actor: NDArray[np.intp]  # its number, ascending
+    mesh: I32
+    frame: NDArray[np.intp]
+    paint: NDArray[np.uint8]  # (K, 3) the part's own colour, or the actor's
+    scale: F64
+
+    @classmethod
+    def of(cls, descriptions: Sequence[ActorDescription], bodies: "BlueprintMeshes") -> "PartRows":
+        """Return the parts of one actor of each description."""
+        parts = [(index, part) for index, made in enumerate(descriptions) for part in bodies.parts(made)]
+        colours = [_colour(made) for made in descriptions]
+        return cls(
+            actor=np.array([index for index, _ in parts], np.intp),
+            mesh=np.array([part.mesh for _, part in parts], np.int32),
+            frame=np.array([part.frame for _, part in parts], np.intp),
+            paint=np.array([part.colour or colours[index] for index, part in parts], np.uint8).reshape(-1, 3),
+            scale=np.array([part.scale for _, part in parts], np.float64),
+        )
+
+
 class _ActorRows(NamedTuple):
-    """The visible actors, made anew with each new set. The first block has a row per actor, the second per part."""
+    """The visible actors (A,), made anew with each new set."""
 
     records: list[ActorRecord]
     row: I32  # in the actor table
     slot: I32  # of the body that moves it: its own, or that of what it is attached to; NO_BODY where nothing does
     vehicles: NDArray[np.intp]
     walkers: NDArray[np.intp]
+    parts: PartRows
 
-    actor: NDArray[np.intp]
-    mesh: I32
-    frame: NDArray[np.intp]
-    paint: NDArray[np.uint8]  # (K, 3) the part's own colour, or the actor's
-    scale: F64
+
+class Motion(NamedTuple):
+    """Where actors (A,) are and how they move."""
+
+    place: F64  # (A, 3, 4) matrices
+    velocity_mps: F64  # (A, 3)
+    turning_radps: F64  # (A, 3)
+    actor_id: NDArray[np.uint32]
+    lights: NDArray[np.uint32]
+
+
+def instances_of(parts: PartRows, motion: Motion, frames: F64) -> Instances:
+    """Return the parts in their places; ``frames`` (A, 14, 3, 4) are those of the parts in their actors'."""
+    actor = parts.actor
+    turn, inner = motion.place[actor, :, :3], frames[actor, parts.frame]
+    pose = np.empty((len(actor), 3, 4), np.float32)
+    pose[:, :, :3] = turn @ inner[:, :, :3] * parts.scale[:, None, None]
+    arm_m = (turn @ inner[:, :, 3:])[:, :, 0]
+    pose[:, :, 3] = motion.place[actor, :, 3] + arm_m
+    turning = motion.turning_radps[actor]
+    return Instances(
+        mesh=parts.mesh,
+        pose=pose,
+        before=pose,
+        actor_id=motion.actor_id[actor],
+        colour=parts.paint,
+        lights=motion.lights[actor],
+        velocity_mps=(motion.velocity_mps[actor] + np.cross(turning, arm_m)).astype(np.float32),
+        turning_radps=turning.astype(np.float32),
+    )
+
+
+def rigid_frames(count: int) -> F64:
+    """Return the frames (A, 14, 3, 4) of parts that do not move in their actors."""
+    frames = np.zeros((count, len(WALKER_FRAMES), 3, 4))
+    frames[:, 0, :, :3] = np.eye(3)
+    return frames
+
+
+def put_vehicles(frames: F64, rows: NDArray[np.intp], specs: StructuredArray, steer_rad: F64, turned_rad: F64) -> None:
+    """Write the frames of the wheels of vehicles in ``rows`` (V,); ``specs`` are of VEHICLE_SPEC (V,)."""
+    hubs = np.stack([specs[name] for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")], -1)
+    frames[rows, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, steer_rad, turned_rad)
 
 
 class VisibleActors:
@@ -67,24 +132,16 @@ class VisibleActors:
     def gather(self, episode: "Episode", *, goes_on: bool) -> Instances:
         """Return all bodies as they are now; ``goes_on`` where the last gathering was in the frame before this one."""
         rows = self._rows_of(episode)
-        place = matrices(episode.actors.pose[rows.row])
-        turn, parts = place[rows.actor, :, :3], self._frames(episode, rows)[rows.actor, rows.frame]
-        pose = np.empty((len(rows.mesh), 3, 4), np.float32)
-        pose[:, :, :3] = turn @ parts[:, :, :3] * rows.scale[:, None, None]
-        arm_m = (turn @ parts[:, :, 3:])[:, :, 0]
-        pose[:, :, 3] = place[rows.actor, :, 3] + arm_m
         velocity, turning = _motion(episode, rows.slot)
-        actor_id = np.array([record.id for record in rows.records], np.uint32)
-        return Instances(
-            mesh=rows.mesh,
-            pose=pose,
-            before=self._before(rows, pose, goes_on=goes_on),
-            actor_id=actor_id[rows.actor],
-            colour=rows.paint,
-            lights=_lights(rows.records, episode.elapsed_s)[rows.actor],
-            velocity_mps=(velocity[rows.actor] + np.cross(turning[rows.actor], arm_m)).astype(np.float32),
-            turning_radps=turning[rows.actor].astype(np.float32),
+        motion = Motion(
+            matrices(episode.actors.pose[rows.row]),
+            velocity,
+            turning,
+            np.array([record.id for record in rows.records], np.uint32),
+            _lights(rows.records, episode.elapsed_s),
         )
+        found = instances_of(rows.parts, motion, self._frames(episode, rows))
+        return found._replace(before=self._before(rows, found.pose, goes_on=goes_on))
 
     def _rows_of(self, episode: "Episode") -> _ActorRows:
         if self._rows is None or self._version != episode.actors.version:
@@ -93,15 +150,11 @@ class VisibleActors:
 
     def _frames(self, episode: "Episode", rows: _ActorRows) -> F64:
         """Return the frames (A, 14, 3, 4) of the parts in those of the actors."""
-        frames = np.zeros((len(rows.records), len(WALKER_FRAMES), 3, 4))
-        frames[:, 0, :, :3] = np.eye(3)
-        bodies = episode.bodies
+        frames, bodies = rigid_frames(len(rows.records)), episode.bodies
         if len(rows.vehicles):
             slots = rows.slot[rows.vehicles]
-            specs = bodies.spec(slots)
-            hubs = np.stack([specs[name] for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")], -1)
             rolling = (bodies.wheel_steer[slots], bodies.wheel_turned[slots])
-            frames[rows.vehicles, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, *rolling)
+            put_vehicles(frames, rows.vehicles, bodies.spec(slots), *rolling)
         if len(rows.walkers):
             walking = [rows.records[index] for index in rows.walkers.tolist()]
             velocity = bodies.velocity[rows.slot[rows.walkers]]
@@ -118,7 +171,7 @@ class VisibleActors:
 
     def _before(self, rows: _ActorRows, pose: NDArray[np.float32], *, goes_on: bool) -> NDArray[np.float32]:
         """Return the previous poses of the parts; new actors have their present pose."""
-        first = np.searchsorted(rows.actor, np.arange(len(rows.records) + 1))
+        first = np.searchsorted(rows.parts.actor, np.arange(len(rows.records) + 1))
         known = self._poses if goes_on else {}
         self._poses = {record.id: pose[first[index] : first[index + 1]] for index, record in enumerate(rows.records)}
         if not known or not len(pose):
@@ -142,8 +195,6 @@ def _survey(episode: "Episode", bodies: "BlueprintMeshes") -> _ActorRows:
     actors = episode.actors
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]
-    parts = [(index, part) for index, record in enumerate(records) for part in bodies.parts(record.description)]
-    colours = [_colour(record) for record in records]
     kinds = np.array(
         [record.kind if own else BlueprintKind.PROP for record, own in zip(records, embodied, strict=True)], int
     )
@@ -153,11 +204,7 @@ def _survey(episode: "Episode", bodies: "BlueprintMeshes") -> _ActorRows:
         slot=np.array([_carrying_slot(episode, record) for record in records], np.int32),
         vehicles=np.flatnonzero(kinds == BlueprintKind.VEHICLE),
         walkers=np.flatnonzero(kinds == BlueprintKind.WALKER),
-        actor=np.array([index for index, _ in parts], np.intp),
-        mesh=np.array([part.mesh for _, part in parts], np.int32),
-        frame=np.array([part.frame for _, part in parts], np.intp),
-        paint=np.array([part.colour or colours[index] for index, part in parts], np.uint8).reshape(-1, 3),
-        scale=np.array([part.scale for _, part in parts], np.float64),
+        parts=PartRows.of([record.description for record in records], bodies),
     )
 
 
@@ -168,8 +215,8 @@ def _carrying_slot(episode: "Episode", record: ActorRecord) -> int:
     return NO_BODY if bearer is None else bearer.slot
 
 
-def _colour(record: ActorRecord) -> tuple[int, ...]:
-    return tuple(int(part) for part in record.description.attribute("color", _UNPAINTED).split(","))
+def _colour(description: ActorDescription) -> tuple[int, ...]:
+    return tuple(int(part) for part in description.attribute("color", _UNPAINTED).split(","))
 
 
 def _motion(episode: "Episode", slot: I32) -> tuple[F64, F64]:

@@ -7,9 +7,12 @@ Source of meaning: CARLA 0.9.16, RayCastSemanticLidar.cpp and RayCastLidar.cpp. 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.protocol.values.actors import ActorDescription
-from linden.sensors.devices.lidar.firing_pattern import F32, I32, aim, fire, read_fan, turned_on
+from linden.protocol.values.space import Transform
+from linden.sensors.casting.caster import Caster
+from linden.sensors.devices.lidar.firing_pattern import F32, I32, Fan, Fired, aim, fire, read_fan, turned_on
 from linden.sensors.devices.lidar.sweep import (
     Chances,
     Losses,
@@ -36,18 +39,28 @@ class Lidar:
 
     def measure(self, look: SensorLook) -> Sweep:
         """Return the points of the time since the last measurement."""
-        fan, losses, dice = self._fan, self._losses, dice_of(self._losses.seed, look.number)
-        fired = fire(fan, self._angle_deg, look.interval_s)
+        fired = fire(self._fan, self._angle_deg, look.interval_s)
         self.skip(look.interval_s)
-        number: I32 = np.arange(fired.rays, dtype=np.int32)
-        if losses.general_rate > 0.0:
-            number = number[dice.random(len(number), np.float32) >= losses.general_rate]
-        hits = look.seen.caster.closest(aim(fired, number, look.pose), fan.range_m, coherent=True, outer=True)
-        error_m: F32 = np.zeros(len(number), np.float32)
-        if losses.deviation_m > 0.0:
-            error_m = np.float32(losses.deviation_m) * dice.standard_normal(len(number), np.float32)
-        chances = Chances(dice.random(len(number), np.float32), error_m)
-        return Sweep(math.radians(self._angle_deg), *points_of(fired, number, hits, losses, chances))
+        count, points, _ = scan(self._fan, self._losses, fired, look.number, look.pose, look.seen.caster)
+        return Sweep(math.radians(self._angle_deg), count, points)
+
+
+def scan(
+    fan: Fan, losses: Losses, fired: Fired, number: int, pose: Transform, caster: Caster
+) -> tuple[NDArray[np.uint32], F32, I32]:
+    """Cast the rays of a sweep, the sensor's measurement ``number``.
+
+    Returns how many points each channel has, the points (M, 4), and the ray (M,) of each.
+    """
+    dice = dice_of(losses.seed, number)
+    rays: I32 = np.arange(fired.rays, dtype=np.int32)
+    if losses.general_rate > 0.0:
+        rays = rays[dice.random(len(rays), np.float32) >= losses.general_rate]
+    hits = caster.closest(aim(fired, rays, pose), fan.range_m, coherent=True, outer=True)
+    error_m: F32 = np.zeros(len(rays), np.float32)
+    if losses.deviation_m > 0.0:
+        error_m = np.float32(losses.deviation_m) * dice.standard_normal(len(rays), np.float32)
+    return points_of(fired, rays, hits, losses, Chances(dice.random(len(rays), np.float32), error_m))
 
 
 def read_losses(description: ActorDescription) -> Losses:

@@ -52,14 +52,15 @@ class Chances(NamedTuple):
     error_m: F32
 
 
-def points_of(fired: Fired, number: I32, hits: Hits, losses: Losses, chances: Chances) -> tuple[U32, F32]:
-    """Return how many points each channel has, and the points (M, 4)."""
+def points_of(fired: Fired, number: I32, hits: Hits, losses: Losses, chances: Chances) -> tuple[U32, F32, I32]:
+    """Return how many points each channel has, the points (M, 4), and the number (M,) of the ray of each."""
     count, points = np.zeros(len(fired.up), np.uint32), np.empty((len(number), 4), np.float32)
+    kept = np.empty(len(number), np.int32)
     limit = losses.intensity_limit if losses.zero_intensity > 0.0 else 0.0
     alpha = losses.zero_intensity / limit if limit > 0.0 else 0.0
     rates = np.array([losses.attenuation_per_m, limit, alpha, 1.0 - losses.zero_intensity], np.float32)
-    made = _write(*fired, number, hits.distance_m, rates, *chances, count, points)
-    return count, points[:made]
+    made = _write(*fired, number, hits.distance_m, rates, *chances, count, points, kept)
+    return count, points[:made], kept[:made]
 
 
 @kernel
@@ -75,6 +76,7 @@ def _write(
     error: F32,
     count: U32,
     points: F32,
+    kept: I32,
 ) -> int:  # pragma: no cover - compiled
     made = 0
     for ray in range(len(number)):
@@ -89,6 +91,7 @@ def _write(
         points[made, 1] = away * level[channel] * sine[step]
         points[made, 2] = away * up[channel]
         points[made, 3] = intensity
+        kept[made] = number[ray]
         count[channel] += np.uint32(1)
         made += 1
     return made
