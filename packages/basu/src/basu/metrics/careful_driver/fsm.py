@@ -73,7 +73,8 @@ class Fsm:
         critical = self.critical(view)
         hard = critical * (self.hard_mps2 - self.comfortable_mps2) + self.comfortable_mps2
         wanted = np.where(critical > 0.0, hard, self.proactive(view) * self.comfortable_mps2)
-        return np.minimum(ramped_mps2(before_mps2, step_s), wanted)
+        braking_mps2: Numbers = np.minimum(ramped_mps2(before_mps2, step_s), wanted)
+        return braking_mps2
 
     def following_m(self, speed_mps: Numbers) -> Numbers:
         """Return the gap at which the proactive measure begins to rise."""

@@ -36,7 +36,7 @@ class View(NamedTuple):
     """One moment of N encounters."""
 
     gap_m: Numbers  # from the own front to the other's rear, negative where the two are beside each other
-    length_m: Numbers  # of both vehicles together
+    length_m: Numbers  # half the sum of both lengths
     clear_m: Numbers  # between the sides of both, negative where one is in the path of the other
     own_mps: Numbers
     own_mps2: Numbers  # acceleration in the last step
