@@ -87,7 +87,7 @@ def test_table_and_page_show_the_figures(played: Played, tmp_path: Path) -> None
     text = table(played.document)
     assert "persons" in text
     assert "standing passengers lose balance" in text
-    trace = [Trace(float(second), 5.0 * second) for second in range(3600)]
+    trace = [Trace(float(second), 5.0 * second % played.plan.length_m) for second in range(3600)]
     write_page(tmp_path, played.document, played.plan, [trace, trace])
     page = (tmp_path / PAGE_FILE).read_text(encoding="utf-8")
     assert page.count("<polyline") == 2 * 5

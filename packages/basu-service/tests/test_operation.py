@@ -115,7 +115,7 @@ def test_a_driver_that_leaves_at_once_is_held_until_all_have_boarded() -> None:
     assert not fair.boarded_moving
 
 
-def test_nobody_boards_a_vehicle_that_rolls_or_rests_elsewhere_or_too_shortly() -> None:
+def test_no_person_boards_a_vehicle_that_rolls_or_rests_elsewhere_or_too_shortly() -> None:
     service = Service([person()], 1)
     assert not any(service.step(0.05 * tick, 0, Seen("A", rests=False, goes=False)) for tick in range(200))
     assert not any(service.step(10 + 0.05 * tick, 0, Seen(None, rests=True, goes=False)) for tick in range(200))
@@ -194,7 +194,7 @@ def test_a_vehicle_is_held_for_the_timetable_and_never_too_long() -> None:
     assert held(1000.0) == pytest.approx(MOST_REST_S, abs=2.0)
 
 
-def test_passengers_of_a_vehicle_whose_drive_ends_are_stranded_and_the_other_goes_on() -> None:
+def test_passengers_of_a_vehicle_that_ends_its_drive_are_stranded_and_the_other_goes_on() -> None:
     drivers = [Driver(dies_s=700.0), Driver()]
     played = play(drivers, wanted=demand(20.0), results=dead)
     part = played.document["persons"]
@@ -221,7 +221,7 @@ def test_headway_control_spreads_vehicles_that_begin_together_over_30_seeds() ->
     assert test.p_value < 0.001
 
 
-def test_nobody_stands_where_seats_are_free_but_those_that_like_to() -> None:
+def test_passengers_stand_while_seats_are_free_only_if_they_like_to() -> None:
     played = play(honest(), wanted=demand(4.0, Shares(stands=0.0)))
     assert played.document["rides"]["most_standing"] == 0
     liking = play(honest(), wanted=demand(4.0, Shares(stands=1.0)))

@@ -1,4 +1,4 @@
-"""The cabin of a shuttle: seats, room to stand, the place for a wheelchair, and who takes which.
+"""The cabin of a shuttle: seats, room to stand, the place for a wheelchair, and which passenger takes which.
 
 The EasyMile EZ10 of Linden has 6 seats and takes 12 passengers (METRO Magazine, 13 February 2020; EasyMile). What a
 wheelchair or a pushchair takes of the room to stand is an assumption of this project.
@@ -90,7 +90,7 @@ class Cabin:
         del self.aboard[person.number]
 
     def settle(self) -> None:
-        """Let standing passengers take free seats, those that boarded first before the others."""
+        """Let standing passengers take free seats, in the order of boarding."""
         for number, (person, space) in self.aboard.items():
             if space is Space.STANDING and not person.likes_standing and self._free_seats > 0:
                 self.aboard[number] = person, Space.SEAT

@@ -29,7 +29,7 @@ class PersonsPart(TypedDict):
     came: Count
     carried: Annotated[int, Value("alighted at their destination", low=0)]
     riding: Annotated[int, Value("aboard at the end", low=0)]
-    stranded: Annotated[int, Value("aboard a vehicle whose drive ended before the service", low=0)]
+    stranded: Annotated[int, Value("aboard a vehicle that ended its drive before the service", low=0)]
     waiting: Annotated[int, Value("at a stop at the end", low=0)]
     gave_up: Count
     left_behind: Annotated[int, Value("times that a vehicle left or passed a stop without a waiting person", low=0)]
@@ -41,9 +41,9 @@ class WaitsPart(TypedDict):
     """Waiting times in s."""
 
     mean_s: Annotated[
-        float | None, "of all that came, until they boarded, gave up, or the service ended: no person is left out"
+        float | None, "of all persons, until they boarded, gave up, or the service ended: no person is left out"
     ]
-    boarded_mean_s: Annotated[float | None, "of those that boarded"]
+    boarded_mean_s: Annotated[float | None, "of the persons that boarded"]
     boarded_p90_s: float | None
     longest_s: float | None
 

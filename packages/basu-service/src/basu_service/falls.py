@@ -87,7 +87,7 @@ def of_hundred(strongest_mps2: float, *, holds_on: bool) -> Falls:
 
 
 def _share(felt_mps2: float, medians_mps2: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the share of persons whose limit lies below what is felt, for each draw."""
+    """Return the share of persons with a limit below what is felt, for each draw."""
     if felt_mps2 <= 0.0:
         return np.zeros(len(medians_mps2))
     return np.array([STANDARD.cdf(float(each)) for each in (np.log(felt_mps2) - np.log(medians_mps2)) / spreads])

@@ -229,7 +229,7 @@ def reasons(operated: Operated) -> list[str]:
     if part["carried_past"]:
         found.append(f"{part['carried_past']} times a passenger was carried past its destination")
     if part["stranded"]:
-        found.append(f"{part['stranded']} passengers were aboard a vehicle whose drive ended")
+        found.append(f"{part['stranded']} passengers were aboard a vehicle that ended its drive")
     if gaps["longest_gap_s"] > GAP_FACTOR * gaps["planned_s"]:
         found.append(
             f"no vehicle left a stop for {gaps['longest_gap_s'] / 60:.0f} min, and one is planned each "

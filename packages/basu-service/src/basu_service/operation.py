@@ -5,10 +5,10 @@ test can play it with vehicles of its own.
 
 ::
 
-    DRIVING -- at rest at a stop --> OPENING -- doors open --> SERVING -- all have boarded, not held --> CLOSING
-       ^                                ^                                                                  |
-       |                                +--------- a person comes, the vehicle still rests ---------+      v
-       +----------------------- the vehicle has left the stop --------------------------------------- CLOSED
+    DRIVING ── rests at a stop ──► OPENING ──► SERVING ── all aboard ──► CLOSING ──► CLOSED
+       ▲                              ▲                                              │  │
+       │                              └──────────── a person comes ──────────────────┘  │
+       └──────────────────────────── leaves ────────────────────────────────────────────┘
 
 The parking brake holds the vehicle from OPENING to CLOSING. So no vehicle leaves with open doors, and a vehicle that
 moves takes no person in.
@@ -36,8 +36,8 @@ WHEELCHAIR_S = 45.0
 """For one wheelchair over a ramp, in or out, with securing it: the middle of 30 to 60 s there, from memory."""
 PUSHCHAIR_FACTOR = 2.0  # of the time of a person on foot: an assumption of this project
 MOST_REST_S = 120.0
-"""Longest hold at a stop, and the time after which doors open no more: the stops lie in the lane, and a drive in which
-the vehicle stands for 180 s has ended as blocked."""
+"""Longest hold at a stop, and the time after which doors open no more. The stops lie in the lane. A drive ends as
+blocked when the vehicle has stood for 180 s."""
 
 
 class Phase(enum.Enum):
@@ -71,7 +71,7 @@ class Call:
     alighted: int = 0
     left_behind: int = 0
     held_since_s: float | None = None
-    held_s: float = 0.0  # with open doors for the timetable, from the first moment with nobody at the door
+    held_s: float = 0.0  # with open doors for the timetable, from the first moment with a free door
     planned_departure_s: float | None = None
 
 
@@ -193,7 +193,7 @@ class Service:
         doors.phase, doors.until_s = Phase.CLOSING, t_s + DOOR_S
 
     def _through_door(self, doors: _Doors, vehicle: int, call: Call, t_s: float) -> float | None:
-        """Let the next person alight or board; return how long that takes, None where nobody is left."""
+        """Let the next person alight or board; return how long that takes, None where no person is left."""
         cabin = doors.cabin
         leaving = [person for person, _ in cabin.aboard.values() if person.destination_id == call.stop_id]
         if leaving:
@@ -213,13 +213,13 @@ class Service:
         return takes_s
 
     def _next(self, doors: _Doors, stop_id: str, t_s: float) -> Journey | None:
-        """Return the next that boards: wheelchairs first, then in the order of coming; None where nobody fits in."""
+        """Return the next that boards: wheelchairs first, then in the order of coming; None where no person fits in."""
         fitting = [each for each in self._waiting(stop_id, t_s) if doors.cabin.refusal(each.person) is None]
         fitting.sort(key=lambda each: (each.person.kind is not Kind.WHEELCHAIR, each.person.number))
         return fitting[0] if fitting else None
 
     def _waiting(self, stop_id: str, t_s: float) -> list[Journey]:
-        """Return the persons that wait at a stop; whose patience is over has given up."""
+        """Return the persons that wait at a stop; a person without patience has given up."""
         found = []
         for journey in self._at.get(stop_id, ()):
             if journey.person.came_s > t_s:
@@ -231,7 +231,7 @@ class Service:
         return found
 
     def _mark(self, vehicle: int, t_s: float, change: Callable[[], None]) -> None:
-        """Change the cabin, and note who stands from now on or no more."""
+        """Change the cabin, and note the passengers that stand from now on or no more."""
         cabin = self._vehicles[vehicle].cabin
         before = {number for number, (_, space) in cabin.aboard.items() if space is Space.STANDING}
         change()
@@ -254,7 +254,7 @@ class Service:
         self.passed.append((t_s, vehicle, stop_id, len(waiting)))
 
     def finish(self, t_s: float) -> None:
-        """Let all give up whose patience has ended by the end of the service."""
+        """Let the persons give up that have lost patience by the end of the service."""
         for stop_id in self._at:
             self._waiting(stop_id, t_s)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import carla
+import numpy as np
 
 from basu.managers.base_manager import BaseManager
 from basu.metrics.path_following import SERVED_M, serves
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
+    from basu_service.plan import ServicePlan
 
 TRACE_S = 1.0  # between two places of a vehicle that are kept for the picture
 
@@ -25,7 +27,7 @@ class Trace(NamedTuple):
     """Where a vehicle was, once a second."""
 
     t_s: float
-    route_s_m: float  # along the first round and on, from the beginning of the route
+    place_m: float  # along the round, as `ServicePlan.places_m` has it
 
 
 class VehicleOperator(BaseManager):
@@ -36,9 +38,9 @@ class VehicleOperator(BaseManager):
         last_s: the time of its latest frame.
     """
 
-    def __init__(self, service: Service, vehicle: int, start_m: float) -> None:
-        """Operate the vehicle at a place in the service, counted from 0, that begins at ``start_m`` of the route."""
-        self._service, self._vehicle, self._start_m = service, vehicle, start_m
+    def __init__(self, service: Service, vehicle: int, plan: ServicePlan) -> None:
+        """Operate the vehicle at a place in the service, counted from 0."""
+        self._service, self._vehicle, self._plan = service, vehicle, plan
         self._parked = False
         self._live: Live | None = None
         self._next = 0  # among the stops of its route
@@ -60,6 +62,13 @@ class VehicleOperator(BaseManager):
     def setup(self, run: Run) -> None:
         """Take the stops of the vehicle's own route."""
         self._stops, self._step_s = run.route.stops, run.step_s
+        start_m, places_m = self._plan.starts_m[self._vehicle], dict(self._plan.places_m)
+        self._marks_m, self._on_round_m = [0.0], [start_m]  # along its own route, and along the round and on
+        for stop in self._stops:
+            ahead_m = (places_m[stop_of(stop.id)] - self._on_round_m[-1]) % self._plan.length_m
+            if stop.s_m > self._marks_m[-1]:
+                self._marks_m.append(stop.s_m)
+                self._on_round_m.append(self._on_round_m[-1] + ahead_m)
 
     def tick(self, frame: Frame) -> None:
         """Serve the stop at which the vehicle rests, and note the stops that it has passed."""
@@ -79,7 +88,8 @@ class VehicleOperator(BaseManager):
         self._parked = self._service.step(t_s, self._vehicle, seen)
         self._called |= self._parked
         if not self.trace or t_s - self.trace[-1].t_s >= TRACE_S - 1e-6:
-            self.trace.append(Trace(t_s, self._start_m + s_m))
+            on_m = float(np.interp(s_m, self._marks_m, self._on_round_m))
+            self.trace.append(Trace(t_s, on_m % self._plan.length_m))
 
     def close(self) -> None:
         """Nothing was taken."""

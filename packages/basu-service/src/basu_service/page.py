@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from basu_service.plan import ServicePlan
 
 PAGE_FILE = "service.html"
+STYLE = "table.facts th{white-space:nowrap;width:9em}table.facts td{text-align:left}"
 WIDE, HIGH, LEFT, TOP, BELOW = 900.0, 420.0, 60.0, 10.0, 34.0
 COLOURS = ("#0b6e99", "#c2410c", "#15803d", "#7e22ce", "#a16207", "#be123c", "#334155", "#0f766e")
 JUMP_SHARE = 0.5  # of a round between two seconds: the vehicle has begun the next one
@@ -43,7 +44,7 @@ def write_page(folder: Path, document: ServiceDocument, plan: ServicePlan, trace
     body = e(
         "body",
         e("header", e("h1", "Service"), e("p", f"{document['begins']}, demand {document['demand']}")),
-        e("section", e("h2", "Figures"), e("table", e("tbody", *rows))),
+        e("section", e("h2", "Figures"), e("table", e("tbody", *rows), class_="facts")),
         e(
             "section",
             e("h2", "Vehicles over time"),
@@ -65,7 +66,7 @@ def write_page(folder: Path, document: ServiceDocument, plan: ServicePlan, trace
         ),
         e("section", e("h2", "More"), e("p", e("a", "Report of vehicle 1", href="report.html"))),
     )
-    write_bytes(folder / PAGE_FILE, page("Service", drawn(body)))
+    write_bytes(folder / PAGE_FILE, page("Service", drawn(body), style=STYLE))
 
 
 def _clock(value_s: float | None) -> str:
@@ -117,8 +118,7 @@ def _pieces(trace: Sequence[Trace], length_m: float) -> list[list[tuple[float, f
     """Return the places of a vehicle in the round, cut where a new round begins."""
     pieces: list[list[tuple[float, float]]] = []
     before_m = -1.0
-    for t_s, route_s_m in trace:
-        place_m = route_s_m % length_m
+    for t_s, place_m in trace:
         if not pieces or abs(place_m - before_m) > JUMP_SHARE * length_m:
             pieces.append([])
         pieces[-1].append((t_s, place_m))

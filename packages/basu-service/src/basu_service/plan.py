@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from basu.routing.route_file import RouteDescription
     from basu.routing.timetable import Timetable
 
+NEAREST_M = 10.0  # from one vehicle to the next at the start
 CLOSED_M = 5.0  # between the first and the last point of a route that is driven round after round
 FASTEST_ROUND_MPS = 6.0  # more than a shuttle's mean speed, for the number of rounds
 OF_ROUND = "/"  # between the id of a stop and the number of the round, from the second on
@@ -121,6 +122,11 @@ def make_plan(description: RouteDescription, vehicles: int, apart_s: float | Non
         )
     phases_s = tuple(vehicle * apart_s for vehicle in range(vehicles))
     starts_m = tuple(_place_at(timetable, dict(places_m), along_m[-1], phase_s) for phase_s in phases_s)
+    if any(later - earlier < NEAREST_M for earlier, later in itertools.pairwise(starts_m)):
+        raise UserError(
+            f"two vehicles begin at the same place, because the timetable has one of them at a stop for {apart_s:g} s; "
+            "choose another --apart"
+        )
     return ServicePlan(
         description=description,
         length_m=along_m[-1],

@@ -61,7 +61,7 @@ class ServiceConditions:
 
 
 class PlannedService(NamedTuple):
-    """A service whose files were read and checked; nothing was started."""
+    """A service with its files read and checked; nothing was started."""
 
     run: Plan
     plan: ServicePlan
@@ -123,7 +123,7 @@ def drive_service(
     people = draw_persons(planned.demand, options.seed, plan.timetable.run_departure_s, lasts_s)
     due = (plan.planned_departure_s,) if conditions.holds else ()
     service = Service(people, len(planned.run.shuttles), *due)
-    operators = [VehicleOperator(service, place, start_m) for place, start_m in enumerate(plan.starts_m)]
+    operators = [VehicleOperator(service, place, plan) for place in range(len(plan.starts_m))]
     shuttles = tuple(
         shuttle._replace(operator=operator) for shuttle, operator in zip(planned.run.shuttles, operators, strict=True)
     )

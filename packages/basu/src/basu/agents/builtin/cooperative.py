@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RADIO = "COOPERATION"
 SHORT_TICKS, LONG_TICKS = 4, 20  # between two texts of one kind: 0.2 s, and 1 s for departures
 CROSSING_M = 15.0  # behind a line, until the junction is free
-CLOSED_M = 5.0  # between the ends of a route that is a round
+GAP_SHARE = 0.1  # of the length: the ends of a round are nearer; a second shuttle begins a little farther along it
 
 
 class CooperativeAgent(BehavioralAgent):
@@ -144,7 +144,7 @@ def headways_of(route: Route) -> Headways | None:
             round_m = stop.s_m - places_m[name] if round_m is None else round_m
         else:
             places_m[name] = stop.s_m
-    ends_m = math.dist(route.points_m[0, :2], route.points_m[-1, :2])
-    if round_m is None and ends_m < CLOSED_M:
-        round_m = route.length_m
+    gap_m = math.dist(route.points_m[0, :2], route.points_m[-1, :2])
+    if round_m is None and gap_m < GAP_SHARE * route.length_m:
+        round_m = route.length_m + gap_m
     return None if round_m is None or len(places_m) < 2 else Headways(places_m, round_m)

@@ -54,17 +54,19 @@ class Headways:
         return None if text == HEAD else text
 
     def hear(self, texts: Sequence[tuple[str, str]], now_s: float) -> None:
-        """Take in texts, each with its sender; the first stop of a text is the latest one."""
+        """Take in texts, each with its sender; the first stop that the round has is the latest one."""
         for sender, text in texts:
             words = text.split()
-            if words[:1] != [HEAD] or len(words) < 3 or words[1] not in self._places_m:
+            if words[:1] != [HEAD]:
                 continue
+            told = zip(words[1::2], words[2::2], strict=False)
+            known = [each for each in told if each[0] in self._places_m]
             try:
-                ago_s = float(words[2])
-            except ValueError:
+                stop_id, ago_s = known[0][0], float(known[0][1])
+            except (IndexError, ValueError):
                 continue
             if 0.0 <= ago_s <= OLDEST_S:
-                self._others[sender] = words[1], now_s - ago_s
+                self._others[sender] = stop_id, now_s - ago_s
 
     def gaps_s(self, stop_id: str, at_s: float) -> tuple[float, float] | None:
         """Return the time since the leader left a stop and until the follower leaves it, both seen from ``at_s``.

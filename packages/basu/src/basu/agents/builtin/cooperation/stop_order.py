@@ -1,8 +1,8 @@
 """The order at stop signs where several ways stop: the vehicle that stopped first drives first.
 
-A vehicle that stands at its line, or crosses the junction behind it, tells `LINE X Y AGO`: the place of the line in m
-and the time since its stop in s. Another vehicle at a line of the same junction that stopped later lets it go first.
-Where both stopped at about the same time, neither text counts, and the rule of sight decides
+A vehicle that stands at its line, or crosses the junction behind it, tells `LINE X Y AGO`. X and Y are the place of the
+line in m, AGO is the time since its stop in s. Another vehicle at a line of the same junction that stopped later lets
+it go first. Where both stopped at about the same time, neither text counts. Then the rule of sight decides
 (`basu.agents.builtin.rules.right_of_way`).
 """
 
@@ -38,7 +38,7 @@ class StopOrder:
     """What others have told of their stops."""
 
     def __init__(self) -> None:
-        """Know of nobody."""
+        """Know of no other vehicle."""
         self._heard: dict[tuple[float, float], tuple[Standing, float]] = {}  # by the line, with the time of the text
 
     def hear(self, texts: Sequence[str], now_s: float) -> None:

@@ -66,7 +66,7 @@ class WarnedPeople:
     """
 
     def __init__(self) -> None:
-        """Know of nobody."""
+        """Know of no person."""
         self.known: dict[int, tuple[Warned, float]] = {}
 
     def hear(self, texts: Sequence[str], now_s: float) -> None:
