@@ -108,6 +108,7 @@ def test_a_comparison_takes_pairs_only(played: Played, tmp_path: Path) -> None:
     text = comparison(["honest", "never"], first, second)
     assert "2 seeds" in text
     assert "A higher 0, B higher 2" in text
+    assert "only 2 seeds" in text
     with pytest.raises(UserError, match="the seeds differ"):
         comparison(["a", "b"], first, {1: played.document})
     shorter = {seed: play(honest(), seed=seed, minutes=30.0).document for seed in (2, 3)}

@@ -13,7 +13,7 @@ from basu.cli.termination import terminated_as_interrupted
 from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.intervals import bootstrap, sign_test
+from basu.intervals import FEW, bootstrap, sign_test
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.output.report.documents import plain
@@ -149,6 +149,8 @@ def comparison(names: list[str], first: Mapping[int, ServiceDocument], second: M
             f"  {f'{difference.low:.2f} to {difference.high:.2f}':<20}"
             f"A higher {signs.first_only}, B higher {signs.second_only}, p = {signs.p_value:.3f}"
         )
+    if len(first) < FEW:
+        lines.append(f"only {len(first)} seeds: the intervals are too narrow")
     return "\n".join(lines)
 
 
