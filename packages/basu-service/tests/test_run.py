@@ -84,10 +84,11 @@ def saved(folder: Path, name: str, text: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_shuttle_waits_until_all_have_boarded_and_two_services_have_the_same_bytes(
     services: Services, busy: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    options = ["--minutes", 0.6, "--demand", busy, "--seed", 4, "--no-holding"]
+    options = ["--minutes", 0.45, "--demand", busy, "--seed", 4, "--no-holding"]
     (_, first), (_, again) = (
         services("cooperative", *options, name="one"),
         services("cooperative", *options, name="two"),
@@ -105,6 +106,7 @@ def test_a_shuttle_waits_until_all_have_boarded_and_two_services_have_the_same_b
     assert "standing passengers lose balance" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_an_agent_that_dies_is_judged_alone_and_the_service_goes_on(
     services: Services, tmp_path: Path, busy: Path
 ) -> None:
@@ -120,6 +122,7 @@ def test_an_agent_that_dies_is_judged_alone_and_the_service_goes_on(
     assert (folder / "shuttle_2" / "result.json").exists()
 
 
+@pytest.mark.slow
 def test_an_agent_that_leaves_with_open_doors_is_held_and_no_person_boards_while_it_moves(
     services: Services, tmp_path: Path, busy: Path
 ) -> None:
@@ -134,6 +137,7 @@ def test_an_agent_that_leaves_with_open_doors_is_held_and_no_person_boards_while
     assert not document["passed"]
 
 
+@pytest.mark.slow
 def test_a_cooperative_shuttle_hears_when_the_other_one_left_its_stop(services: Services, tmp_path: Path) -> None:
     told = tmp_path / "told"
     told.mkdir()
