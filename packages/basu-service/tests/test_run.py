@@ -26,6 +26,31 @@ class Dies(AutonomousAgent):
     def config(self):
         return {}
 """
+LEAVES = """
+class Leaves(AutonomousAgent):
+    \"\"\"Goes at once with open doors, straight on.\"\"\"
+
+    def setup(self):
+        pass
+
+    def run_step(self, sensor_data):
+        self.vehicle.open_door(carla.VehicleDoor.All)
+        return carla.VehicleControl(throttle=0.5)
+
+    def config(self):
+        return {}
+"""
+PROBE = """
+from basu.agents.builtin.cooperative import CooperativeAgent
+
+class Probe(CooperativeAgent):
+    def run_step(self, sensor_data):
+        control = super().run_step(sensor_data)
+        if self._ticks == 470:
+            heard = sorted(stop for stop, _ in self.headways._others.values())
+            open(f"{FOLDER}/{self.route.length_m:.0f}.txt", "w").write(" ".join(heard))
+        return control
+"""
 BUSY = {
     "schema_version": 1,
     "stops": {"S1": {"rates": [{"from": "06:00", "to": "20:00", "per_hour": 1500}], "to": {"S4": 1}}},
@@ -95,6 +120,32 @@ def test_an_agent_that_dies_is_judged_alone_and_the_service_goes_on(
     assert document["persons"]["stranded"] == document["vehicles"][0]["boarded"]
     assert any("vehicle 1 ended before the service" in why for why in document["reasons"])
     assert (folder / "shuttle_2" / "result.json").exists()
+
+
+@pytest.mark.slow
+def test_an_agent_that_leaves_with_open_doors_is_held_and_no_person_boards_while_it_moves(
+    services: Services, tmp_path: Path, busy: Path
+) -> None:
+    leaves = saved(tmp_path, "leaves", LEAVES)
+    code, folder = services(leaves, "--beside", "basic", "--minutes", 0.5, "--demand", busy, "--no-holding")
+    document = read_service(folder)
+    calls = [call for call in document["calls"] if call["vehicle"] == 1]
+    moved_s = document["lasts_s"] if not calls or calls[0]["departure_s"] is None else calls[0]["departure_s"]
+    boarded_s = [each["boarded_s"] for each in document["journeys"] if each["vehicle"] == 1]
+    assert all(each is not None and each <= moved_s for each in boarded_s)
+    assert code == 1
+    assert not document["passed"]
+
+
+@pytest.mark.slow
+def test_a_cooperative_shuttle_hears_when_the_other_one_left_its_stop(services: Services, tmp_path: Path) -> None:
+    told = tmp_path / "told"
+    told.mkdir()
+    probe = saved(tmp_path, "probe", f"FOLDER = {str(told)!r}\n{PROBE}")
+    services(probe, "--minutes", 0.4, "--no-holding", "--apart", 1, "--agent-writes", told)
+    ahead, behind = sorted(told.iterdir(), key=lambda path: float(path.stem))  # the first one has the longer way
+    assert ahead.read_text(encoding="utf-8") == "S1"
+    assert behind.read_text(encoding="utf-8") == ""
 
 
 @pytest.mark.parametrize(
