@@ -37,6 +37,7 @@ OPTIONAL = (
         "basu_openscenario",
         "basu_ros",
         "basu_search",
+        "basu_service",
         "basu_sumo",
         "basu_truth",
         "basu_window",

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from basu.metrics.passengers.service import ONE_BOARDS_S
 from basu_sumo.link import Link, in_process
-from basu_sumo.passengers import BOARDING_S, Passengers
+from basu_sumo.passengers import Passengers
 
 STEP_S = 0.05
 
@@ -52,14 +53,14 @@ def test_people_wait_for_the_shuttle_and_nothing_else(link: Link) -> None:
 def test_passengers_board_one_after_the_other_and_leave_sumo_for_the_ride(link: Link) -> None:
     ride = Ride(link)
     ride.go_on(2.0, None)
-    ride.go_on(BOARDING_S - 0.5, "S1")
+    ride.go_on(ONE_BOARDS_S - 0.5, "S1")
     assert ride.names("boarded") == ["early"]
     assert "early" not in link.api.person.getIDList()
     assert "second" in link.api.person.getIDList()
-    ride.go_on(BOARDING_S, "S1")
+    ride.go_on(ONE_BOARDS_S, "S1")
     assert ride.names("boarded") == ["early", "second"]
     first_s, second_s = (each.boarded_s or 0.0 for each in ride.passengers.found[:2])
-    assert second_s - first_s == pytest.approx(BOARDING_S, abs=0.06)
+    assert second_s - first_s == pytest.approx(ONE_BOARDS_S, abs=0.06)
 
 
 def test_a_passenger_alights_and_walks_on_and_the_late_one_is_left_behind(link: Link) -> None:

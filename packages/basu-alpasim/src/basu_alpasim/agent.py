@@ -88,7 +88,7 @@ class EgodriverAgent(AddressedAgent):
         assert self._first_frame is not None
         ticks = snapshot.frame - self._first_frame
         now_us = self._time_us(snapshot.frame)
-        ego = see_ego(snapshot, own, self.vehicle.get_control().gear)._replace(time_s=now_us * 1e-6)
+        ego = see_ego(snapshot, own, self.vehicle.get_control())._replace(time_s=now_us * 1e-6)
         self._motions.append((now_us, motion_of(own)))
         assert self.route is not None  # setup refuses
         axle = rig_pose(self._motions[-1][1], self._facts.body.rear_axle_m).position

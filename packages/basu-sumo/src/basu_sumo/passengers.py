@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.metrics.passengers.service import CAPACITY, ONE_ALIGHTS_S, ONE_BOARDS_S
 from basu.records.history.sumo import Passenger
 from basu_sumo.road_users import STAGE_DRIVING
 
@@ -17,10 +18,6 @@ if TYPE_CHECKING:
     from basu_sumo.link import Link
 
 LINE = "shuttle"  # of a person's ride in the demand: <ride lines="shuttle">
-CAPACITY = 12  # passengers of an EasyMile EZ10, seated and standing: the manufacturer's figure
-BOARDING_S, ALIGHTING_S = 2.5, 2.0
-"""For one passenger through one door without a fare: within the ranges of the Transit Capacity and Quality of Service
-Manual, 3rd ed. (TCRP Report 165, 2013), chapter 6, passenger service times."""
 
 
 class _Rider(NamedTuple):
@@ -72,7 +69,7 @@ class Passengers:
         leaving = [rider for rider in self._riders if self.found[rider.number].destination_id == stop_id]
         if leaving:
             self._alight(leaving[0], stop_id, t_s)
-            self._door_free_s = t_s + ALIGHTING_S
+            self._door_free_s = t_s + ONE_ALIGHTS_S
             return
         waiting = [
             passenger
@@ -81,7 +78,7 @@ class Passengers:
         ]
         if waiting and len(self._riders) < CAPACITY:
             self._board(waiting[0], t_s)
-            self._door_free_s = t_s + BOARDING_S
+            self._door_free_s = t_s + ONE_BOARDS_S
 
     def _board(self, passenger: Passenger, t_s: float) -> None:
         """Take a person out of SUMO; it keeps the rest of its way."""

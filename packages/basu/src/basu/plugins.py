@@ -30,6 +30,7 @@ DISTRIBUTIONS = {
         "replay": "basu-carla-log",
         "ros": "basu-ros",
         "serve": "basu-alpasim",
+        "service": "basu-service",
         "sumo": "basu-sumo",
         "truth": "basu-truth",
         "watch": "basu-window",

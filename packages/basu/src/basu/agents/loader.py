@@ -28,6 +28,7 @@ BUILT_IN = {
     "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
     "behavioral-aggressive": "basu.agents.builtin.behavioral:AggressiveAgent",
     "blind": "basu.agents.builtin.baselines:BlindAgent",
+    "cooperative": "basu.agents.builtin.cooperative:CooperativeAgent",
     "creeper": "basu.agents.builtin.baselines:CreeperAgent",
     "standing": "basu.agents.builtin.baselines:StandingAgent",
     "deviating": "basu.agents.builtin.behavioral:DeviatingAgent",

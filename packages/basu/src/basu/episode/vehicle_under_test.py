@@ -42,6 +42,8 @@ class Driver:
     ``participants`` are set up before them and are not ticked.
 
     ``observers`` makes managers that change nothing and are ticked after all others but the scenarios.
+
+    ``interlock`` changes the driver's control on its way to the vehicle, as open doors hold the brake.
     """
 
     role: str = ROLE  # `role_name` of the vehicle
@@ -51,6 +53,7 @@ class Driver:
     sensors: Callable[[], SensorsManager] = lambda: SensorsManager((), "")
     participants: Sequence[BaseManager] = ()
     observers: Callable[[Live], Sequence[BaseManager]] = lambda _live: ()
+    interlock: Callable[[carla.VehicleControl], carla.VehicleControl] = lambda control: control
 
 
 SEEDS_APART = 10_007
@@ -189,8 +192,8 @@ class VehicleUnderTest:
             observer.tick(frame)
 
     def record_applied(self, through: Callable[[carla.VehicleControl], carla.VehicleControl]) -> None:
-        """Record the control that the vehicle is to be given: the answer's, after ``through``."""
-        self.run.changes.control = applied = through(self._state.control)
+        """Record the control that the vehicle is to be given: the answer's, after ``through`` and the interlock."""
+        self.run.changes.control = applied = self._driver.interlock(through(self._state.control))
         self.metrics.applied(applied)
 
     def apply(self) -> None:

@@ -60,6 +60,7 @@ class AgentDrive:
         """Return what drives and watches one vehicle; outputs show the first."""
         agents, is_first = shuttle.agents, shuttle is self._shuttles[0]
         is_watched = is_first and (self._options.shows_sensors or agents.person is not None)
+        operator = shuttle.operator
         return Driver(
             role=shuttle.role,
             start_m=shuttle.start_m,
@@ -73,7 +74,11 @@ class AgentDrive:
                 by_agent=shuttle.loaded.file is not None,
             ),
             participants=[agents],
-            observers=self._observers if is_first else lambda _live: (),
+            observers=lambda live: (
+                *(() if operator is None else operator.managers(live)),
+                *(self._observers(live) if is_first else ()),
+            ),
+            interlock=(lambda control: control) if operator is None else operator.interlock,
         )
 
     @property

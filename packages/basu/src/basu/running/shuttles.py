@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from basu.conditions import ROLE
 from basu.output.report.shuttles import folder_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import carla
+
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
+    from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
+    from basu.managers.base_manager import BaseManager
 
 
 class SensorSet(NamedTuple):
@@ -20,6 +26,16 @@ class SensorSet(NamedTuple):
 
     specs: tuple[SensorSpec, ...]
     source: str
+
+
+class Operator(Protocol):
+    """The operation of one vehicle beside its agent, such as its doors, which a plugin brings."""
+
+    def managers(self, live: Live) -> Sequence[BaseManager]:
+        """Return managers that observe the vehicle's drive."""
+
+    def interlock(self, control: carla.VehicleControl) -> carla.VehicleControl:
+        """Return the control that the vehicle is given in place of the agent's."""
 
 
 class Shuttle(NamedTuple):
@@ -32,6 +48,7 @@ class Shuttle(NamedTuple):
     number: int = 1  # in the run; the first has the whole route
     role: str = ROLE
     start_m: float = 0.0  # along the route, where its own begins
+    operator: Operator | None = None  # None: the agent alone operates it
 
     @property
     def folder(self) -> str:

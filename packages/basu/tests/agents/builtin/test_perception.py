@@ -31,10 +31,11 @@ def seen(number: int, x_m: float, y_m: float, yaw_deg: float = 0.0) -> SimpleNam
 
 def test_the_own_speed_is_that_along_the_vehicles_axis() -> None:
     snapshot = SimpleNamespace(timestamp=SimpleNamespace(elapsed_seconds=7.5))
-    ego = see_ego(snapshot, seen(1, 1.0, 2.0, 90.0), 3)
+    ego = see_ego(snapshot, seen(1, 1.0, 2.0, 90.0), carla.VehicleControl(gear=3, hand_brake=True))
     assert ego[:3] == pytest.approx((7.5, 1.0, 2.0))
     assert ego.speed_mps == pytest.approx(4.0)
     assert ego.gear == 3
+    assert ego.parked
 
 
 def test_lights_are_known_by_their_opendrive_id_and_a_missing_one_is_dark() -> None:

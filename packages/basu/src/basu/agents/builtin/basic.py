@@ -66,7 +66,7 @@ class BasicAgent(AutonomousAgent):
             return carla.VehicleControl(brake=HOLD_BRAKE)  # not in the world before its first tick
         if self.driver is None or self.facts is None:
             self.driver, self.facts = self._get_in(own.get_transform())
-        ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
+        ego = see_ego(snapshot, own, self.vehicle.get_control())
         command = self.driver.step(ego, self.others(snapshot, sensor_data), self._lights.shows)
         return _control(command, self.facts, ego.speed_mps)
 

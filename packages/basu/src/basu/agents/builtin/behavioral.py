@@ -195,7 +195,7 @@ class DeviatingAgent(BehavioralAgent):
         own = snapshot.find(self.vehicle.id)
         if own is None or self.driver is None or self.facts is None:
             return control
-        ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
+        ego = see_ego(snapshot, own, self.vehicle.get_control())
         self._advance(ego, self.driver)
         self._before_mps = ego.speed_mps
         return self._spoilt(control, ego, self.driver, self.facts)

@@ -17,12 +17,14 @@ if TYPE_CHECKING:
     import carla
 
 
-def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot, gear: int) -> DrivenVehicle:
-    """The driven vehicle of a snapshot, which does not tell its gear."""
+def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot, applied: carla.VehicleControl) -> DrivenVehicle:
+    """The driven vehicle of a snapshot; ``applied`` is its control in the last step, with gear and parking brake."""
     pose, velocity = own.get_transform(), own.get_velocity()
     yaw_rad = math.radians(pose.rotation.yaw)
     speed_mps = velocity.x * math.cos(yaw_rad) + velocity.y * math.sin(yaw_rad)
-    return DrivenVehicle(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps, gear)
+    place = pose.location
+    gear, parked = applied.gear, applied.hand_brake
+    return DrivenVehicle(snapshot.timestamp.elapsed_seconds, place.x, place.y, yaw_rad, speed_mps, gear, parked)
 
 
 class Lights:

@@ -32,6 +32,7 @@ class DrivenVehicle(NamedTuple):
     yaw_rad: float
     speed_mps: float  # along its own axis, negative when rolling backwards
     gear: int = 1  # 0 while the gearbox shifts, and before the first throttle
+    parked: bool = False  # whether the parking brake holds it, as while doors are open
 
 
 class Urgency(enum.IntEnum):

@@ -27,6 +27,13 @@ BOARDING_S = 5.0
 quoted from memory). BASU's own drivers rest for 10 s."""
 
 
+CAPACITY = 12
+"""Passengers of an EasyMile EZ10, seated and standing: the manufacturer's figure."""
+ONE_BOARDS_S, ONE_ALIGHTS_S = 2.5, 2.0
+"""For one passenger through one door without a fare: within the ranges of the Transit Capacity and Quality of Service
+Manual, 3rd ed. (TCRP Report 165, 2013), chapter 6, passenger service times."""
+
+
 class Visit(NamedTuple):
     """One stop; times in s from the run's beginning, which is the round's departure; None where there is none."""
 

@@ -49,9 +49,11 @@ class Driver:
         path: what is driven along; the task's, unless something is gone round.
         profile: how fast its points may be driven.
         place: where the vehicle is beside the path, None before the first step.
+        requested: further restrictions, from the agent, until it changes them.
     """
 
     place: PathPosition | None
+    requested: tuple[Restriction, ...] = ()
 
     def __init__(
         self, task: Task, body: VehicleGeometry, model: DriveModel, dt_s: float, manner: Manner = BASIC
@@ -112,7 +114,7 @@ class Driver:
     def _ruled(
         self, ego: DrivenVehicle, place: PathPosition, others: Sequence[Other], shows: Callable[[str], Light]
     ) -> list[Restriction]:
-        """The restrictions of signs, lights and stops in sight."""
+        """The restrictions of signs, lights and stops in sight, and of the parking brake."""
         s_m, front_s_m = place.s_m, place.s_m + self._body.front_m
         demands = [
             *(sign.step(ego, front_s_m, others) for sign in self.task.stop_signs if _in_sight(sign.line_s_m, s_m)),
@@ -123,6 +125,8 @@ class Driver:
                 if _in_sight(light.line_s_m, s_m)
             ),
             *(stop.step(ego, s_m) for stop in self.task.stops if _in_sight(stop.s_m, s_m)),
+            Restriction(0.0, 0.0, Urgency.GENTLE, "parking brake") if ego.parked else None,
+            *self.requested,
         ]
         return [restriction for restriction in demands if restriction is not None]
 

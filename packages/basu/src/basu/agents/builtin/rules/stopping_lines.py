@@ -84,7 +84,7 @@ class ServicePhase(enum.Enum):
 
 
 class ServiceStop:
-    """One service stop on the way; the vehicle's origin, where its door is, halts at ``s_m``.
+    """One service stop on the way; the vehicle's origin, where its door is, halts at ``s_m`` for ``dwell_s``.
 
     The stop is served as `basu.metrics.path_following` defines it, so a driver never waits for what already counts.
     """
@@ -93,7 +93,7 @@ class ServiceStop:
         self.s_m = s_m
         self.name = name
         self.phase = ServicePhase.APPROACHING
-        self._dwell_s = dwell_s
+        self.dwell_s = dwell_s
         self._halted_at_s = 0.0
 
     def step(self, ego: DrivenVehicle, ego_s_m: float) -> Restriction | None:
@@ -102,7 +102,7 @@ class ServiceStop:
         stands = abs(ego.speed_mps) < STANDSTILL_MPS  # the doors open at a standstill, below what the metric calls rest
         if self.phase is ServicePhase.APPROACHING and stands and serves(left_m, ego.speed_mps):
             self.phase, self._halted_at_s = ServicePhase.DWELLING, ego.time_s
-        if self.phase is ServicePhase.DWELLING and ego.time_s - self._halted_at_s >= self._dwell_s - 1e-6:
+        if self.phase is ServicePhase.DWELLING and ego.time_s - self._halted_at_s >= self.dwell_s - 1e-6:
             self.phase = ServicePhase.LEFT
         if self.phase is ServicePhase.LEFT:
             return None

@@ -1,0 +1,170 @@
+"""``basu service compare``: services with equal persons and seeds by two agents, compared in pairs."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.cli.termination import terminated_as_interrupted
+from basu.cli.typed_options import options_of
+from basu.errors import UserError
+from basu.files import write_bytes
+from basu.intervals import FEW, bootstrap, sign_test
+from basu.metrics.scoring import Scoring
+from basu.options.run import RunOptions
+from basu.output.report.documents import plain
+from basu.settings.option import Layer
+from basu_service.document import SERVICE_FILE, read_service
+from basu_service.run_command import conditions_of
+from basu_service.running import drive_service, plan_service
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Mapping
+
+    from basu_service.document import ServiceDocument
+
+FEWEST_PAIRS = 2
+
+
+class Measure(NamedTuple):
+    """One figure that is compared."""
+
+    name: str
+    unit: str
+    value: Callable[[ServiceDocument], float | None]
+
+
+def _minutes(value_s: float | None) -> float | None:
+    return None if value_s is None else value_s / 60.0
+
+
+def _worst(document: ServiceDocument) -> float | None:
+    scores = [each["comfort_score"] for each in document["vehicles"] if each["comfort_score"] is not None]
+    return min(scores, default=None)
+
+
+MEASURES = (
+    Measure("wait, all persons", "min", lambda one: _minutes(one["waits"]["mean_s"])),
+    Measure("variation of headways", "", lambda one: one["headways"]["variation"]),
+    Measure("bunched headways", "", lambda one: one["headways"]["bunched"]),
+    Measure("longest gap", "min", lambda one: _minutes(one["headways"]["longest_gap_s"])),
+    Measure("persons carried", "", lambda one: float(one["persons"]["carried"])),
+    Measure("ride", "min", lambda one: _minutes(one["rides"]["mean_s"])),
+    Measure("comfort, worst vehicle", "", _worst),
+    Measure("services failed", "", lambda one: float(not one["passed"])),
+)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Drive what is an agent, read what is a folder, and print the comparison.
+
+    Raises:
+        UserError, AgentError: nothing can be started like this, or the services are no pairs.
+        SimulatorError: the simulator failed.
+    """
+    if arguments.seeds < FEWEST_PAIRS and not all(Path(each).is_dir() for each in arguments.compared):
+        raise UserError(
+            f"--seeds is {arguments.seeds}; a comparison needs at least {FEWEST_PAIRS} services of each agent"
+        )
+    options = options_of(RunOptions, arguments, Layer({"shuttles": arguments.shuttles}))
+    folders = []
+    for place, word in enumerate(arguments.compared):
+        if Path(word).is_dir():
+            folders.append(Path(word))
+            continue
+        folder = options.output / f"{'ab'[place]}-{plain(word)}"
+        folders.append(folder)
+        conditions = conditions_of(arguments)
+        with terminated_as_interrupted():
+            for seed in range(options.seed, options.seed + arguments.seeds):
+                one = replace(options, agent=word, seed=seed, output=folder)
+                drive_service(one, plan_service(one, conditions), Scoring(), quiet=True)
+                print(f"{word}, seed {seed}: done")
+    first, second = (services_in(folder) for folder in folders)
+    print(comparison([str(each) for each in arguments.compared], first, second))
+    if arguments.json is not None:
+        rows = {
+            str(seed): {measure.name: [measure.value(first[seed]), measure.value(second[seed])] for measure in MEASURES}
+            for seed in sorted(first)
+        }
+        write_bytes(arguments.json, (json.dumps(rows, indent=1) + "\n").encode())
+    return 0
+
+
+def services_in(folder: Path) -> dict[int, ServiceDocument]:
+    """Return the services of a folder by their seeds.
+
+    Raises:
+        UserError: there is none, or two have one seed.
+    """
+    found: dict[int, ServiceDocument] = {}
+    for path in sorted(folder.glob(f"*/{SERVICE_FILE}")):
+        if path.parent.is_symlink():
+            continue
+        document = read_service(path.parent)
+        if document["seed"] in found:
+            raise UserError(f"{folder} has two services with the seed {document['seed']}; move one of them elsewhere")
+        found[document["seed"]] = document
+    if not found:
+        raise UserError(f"{folder} has no folder with {SERVICE_FILE}; name the --output of `basu service run`")
+    return found
+
+
+def comparison(names: list[str], first: Mapping[int, ServiceDocument], second: Mapping[int, ServiceDocument]) -> str:
+    """Return the table: both means, the mean difference with its interval, and the sign test.
+
+    Raises:
+        UserError: the services are no pairs: other seeds, lengths, demands or persons.
+    """
+    if set(first) != set(second):
+        raise UserError(f"the seeds differ ({sorted(first)} and {sorted(second)}); drive both with the same seeds")
+    for seed in sorted(first):
+        one, other = _conditions(first[seed]), _conditions(second[seed])
+        for name, value in one.items():
+            if value != other[name]:
+                raise UserError(
+                    f"the services with seed {seed} are no pair: {name} is {value} and {other[name]}; drive both under "
+                    "the same conditions"
+                )
+    came = sum(each["persons"]["came"] for each in first.values())
+    lines = [
+        f"A {names[0]}, B {names[1]}: {len(first)} seeds, {came} persons",
+        f"{'':<26}{'A':>9}{'B':>9}{'B - A':>9}  95 % interval       sign test",
+    ]
+    for measure in MEASURES:
+        pairs = [(measure.value(first[seed]), measure.value(second[seed])) for seed in sorted(first)]
+        values = np.array([[np.nan if each is None else each for each in pair] for pair in pairs], dtype=np.float64)
+        known = values[np.isfinite(values).all(axis=1)]
+        if len(known) < FEWEST_PAIRS:
+            lines.append(f"{_titled(measure):<26}  fewer than {FEWEST_PAIRS} pairs have it")
+            continue
+        difference, signs = bootstrap(known[:, 1] - known[:, 0]), sign_test(known[:, 0], known[:, 1])
+        lines.append(
+            f"{_titled(measure):<26}{known[:, 0].mean():>9.2f}{known[:, 1].mean():>9.2f}{difference.value:>9.2f}"
+            f"  {f'{difference.low:.2f} to {difference.high:.2f}':<20}"
+            f"A higher {signs.first_only}, B higher {signs.second_only}, p = {signs.p_value:.3f}"
+        )
+    if len(first) < FEW:
+        lines.append(f"only {len(first)} seeds: the intervals are too narrow")
+    return "\n".join(lines)
+
+
+def _conditions(document: ServiceDocument) -> dict[str, object]:
+    """Return what is equal in a pair; a drive that ended early may have made the service shorter."""
+    return {
+        "begins": document["begins"],
+        "holding": document["holding"],
+        "demand": document["demand"],
+        "minutes": document["minutes"],
+        "vehicles": len(document["vehicles"]),
+        "persons": document["persons"]["came"],
+    }
+
+
+def _titled(measure: Measure) -> str:
+    return f"{measure.name}, {measure.unit}" if measure.unit else measure.name
