@@ -13,6 +13,8 @@ from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.settings.option import Option, Settings
 
 CASES = "cases"
+PLAYERS = ("esmini", "scenario-runner")
+"""The programs for which `basu scenario export` writes a case; the first is the default."""
 
 
 def processors() -> int:
