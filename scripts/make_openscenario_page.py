@@ -65,6 +65,7 @@ one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `
 
 `basu scenario export CASE -o case.xosc` writes a case of BASU as OpenSCENARIO XML 1.2, with its road beside it. esmini
 plays the file, and so does `basu scenario run case.xosc`. It needs `pip install "basu-openscenario[export]"`.
+With `--for scenario-runner`, it writes the case for [ScenarioRunner](../how-to/scenario-runner.md#cases-of-basu).
 
 ```console
 $ basu scenario export pedestrian_crossing_1 -o case.xosc

@@ -48,7 +48,8 @@ table. It has a row for each scenario:
 - here: the greatest distance of an entity from the rehearsal in the kinematic mode of `basu-openscenario`, m.
 - esmini: the same in esmini 3.6.0, which merges points of a trajectory within 5 cm.
 
-The distances are over all entities and all steps of 10 ms, in the plane. See [OpenSCENARIO](openscenario.md).
+The distances are over all entities and all steps of 10 ms, in the plane. See [OpenSCENARIO](openscenario.md). What
+ScenarioRunner made of five cases is on [its page](../how-to/scenario-runner.md#cases-of-basu).
 
 | scenario | cases | written | played | late, s | here, m | esmini, m | refused, because of |
 |---|---|---|---|---|---|---|---|

@@ -6,13 +6,16 @@ import datetime as dt
 from typing import TYPE_CHECKING, NamedTuple
 from xml.etree.ElementTree import tostring
 
+import carla
 from lxml import etree
 from scenariogeneration import xosc
 
 from basu.errors import ScenarioError
 from basu.files import write_bytes
+from basu.running.scenario_runs.options import PLAYERS
 from basu.scenarios.stage import EGO
 from basu.testing import careful, rehearse
+from basu_openscenario.exporting import scenario_runner
 from basu_openscenario.exporting.bodies import entity_of
 from basu_openscenario.exporting.conditions import Rehearsed
 from basu_openscenario.exporting.motions import motions_of
@@ -27,7 +30,8 @@ if TYPE_CHECKING:
     from basu.testing import Rehearsal
 
 MINOR_VERSION = 2
-"""Of OpenSCENARIO XML 1: the first with variables, and the last that esmini 3.6 and ScenarioRunner read in full."""
+"""Of OpenSCENARIO XML 1: the first with variables, and the last that esmini 3.6 reads in full."""
+ESMINI, SCENARIO_RUNNER = PLAYERS
 EGO_MPS = 6.0
 """The speed of the ego in the file, which brakes for what is in its lane; the shuttle's agents drive as fast."""
 STEP_S = 0.01
@@ -49,31 +53,40 @@ class Exported(NamedTuple):
     """When each event of a motion begins in it, in s, by the event's name."""
 
 
-def export_case(playable: Playable, scenario: Scenario, opendrive: str, path: Path) -> Exported:
-    """Write a case to ``path``, and its road to TOWN.xodr beside it; return what was written.
+def export_case(playable: Playable, scenario: Scenario, opendrive: str, path: Path, player: str = ESMINI) -> Exported:
+    """Write a case to ``path``, and beside it what its player needs; return what was written.
+
+    That is the road as TOWN.xodr for esmini, and a controller for ScenarioRunner, which takes the road from the server.
 
     Args:
         playable: the case.
         scenario: the case on its route.
         opendrive: the text of its road network.
         path: of the file, FILE.xosc.
+        player: one of ``PLAYERS``.
 
     Raises:
-        ScenarioError: the case does what OpenSCENARIO cannot express.
+        ScenarioError: the case does what the player cannot express.
     """
     road = path.with_name(f"{playable.case.town}.xodr")
-    exported = exported_case(playable, scenario, road.name)
+    exported = exported_case(playable, scenario, road.name, player)
+    document = exported.scenario.get_element()
+    if player == SCENARIO_RUNNER:
+        scenario_runner.adapt(document, carla.Map(playable.case.town, opendrive))
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(road, _with_lights(opendrive))
-    write_bytes(path, tostring(exported.scenario.get_element(), "utf-8", xml_declaration=True))
+    if player == SCENARIO_RUNNER:
+        scenario_runner.write_controller(path.parent)
+    else:
+        write_bytes(road, _with_lights(opendrive))
+    write_bytes(path, tostring(document, "utf-8", xml_declaration=True))
     return exported
 
 
-def exported_case(playable: Playable, scenario: Scenario, road: str) -> Exported:
+def exported_case(playable: Playable, scenario: Scenario, road: str, player: str = ESMINI) -> Exported:
     """Return a case as a scenario of OpenSCENARIO on the road network in the file ``road``.
 
     Raises:
-        ScenarioError: it does what OpenSCENARIO cannot express.
+        ScenarioError: it does what the player cannot express.
     """
     specs = {spec.name: spec for spec in scenario.actors()}
     played = rehearse(scenario, careful(EGO_MPS), step_s=STEP_S)
@@ -84,7 +97,8 @@ def exported_case(playable: Playable, scenario: Scenario, road: str) -> Exported
     for name, spec in specs.items():
         entities.add_scenario_object(name, entity_of(spec.blueprint, by_agent=False))
     places = {EGO: scenario.place.at(-scenario.place.trigger_s_m), **{name: one.pose for name, one in specs.items()}}
-    writer = StoryboardWriter(Rehearsed(scenario.place.route, played, STEP_S), phases)
+    make_writer = scenario_runner.ScenarioRunnerWriter if player == SCENARIO_RUNNER else StoryboardWriter
+    writer = make_writer(Rehearsed(scenario.place.route, played, STEP_S), phases)
     try:
         storyboard = xosc.StoryBoard(writer.init(motions, places), writer.stop(scenario.timeout_s))
         storyboard.add_act(writer.act(motions))

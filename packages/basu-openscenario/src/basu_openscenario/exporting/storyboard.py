@@ -94,21 +94,25 @@ class StoryboardWriter:
                 event.add_action(f"{name} put", xosc.TeleportAction(_position(x_m, y_m, yaw_rad)))
             if motion.moves:
                 event.add_action(f"{name} moves", _following(name, motion.points))
-            event.add_trigger(_trigger(f"{name} begins", self._begin(motion)))
+            event.add_trigger(_trigger(f"{name} begins", self._begin(motion, f"{motion.actor} {nth}")))
             self.begins_s[name] = motion.late_s + (0.0 if motion.guard is None else motion.guard.at_s)
             found.append(event)
         if motion.vanishes:
             event = xosc.Event(f"{name} leaves", xosc.Priority.parallel)
             event.add_action(f"{name} leaves the world", xosc.DeleteEntityAction(motion.actor))
-            event.add_trigger(_trigger(f"{name} is due to leave", self._due(motion, motion.length_s)))
+            event.add_trigger(_trigger(f"{name} is due to leave", self._leaves(motion, name)))
             found.append(event)
         return found
 
-    def _begin(self, motion: Motion) -> Tests:
-        """Return the tests for the begin of a motion."""
+    def _begin(self, motion: Motion, _before: str) -> Tests:
+        """Return the tests for the begin of a motion; ``_before`` is the event of the one before it."""
         if motion.late_s or motion.guard is None:
             return self._due(motion, 0.0)
         return self._tests(motion.guard, 0.0)
+
+    def _leaves(self, motion: Motion, _name: str) -> Tests:
+        """Return the tests for the departure of an actor at the end of a motion, which is the event ``_name``."""
+        return self._due(motion, motion.length_s)
 
     def _due(self, motion: Motion, later_s: float) -> Tests:
         """Return the tests for a moment after the begin of a motion."""
@@ -170,9 +174,13 @@ class StoryboardWriter:
                 event.add_action(f"light {nth + 1} shows", xosc.TrafficSignalStateAction(landmark, state))
                 guard = self._latest(command.time_s)
                 later_s = command.time_s - (0.0 if guard is None else guard.at_s)
-                event.add_trigger(_trigger(f"light {nth + 1} is due", self._after(guard, later_s)))
+                event.add_trigger(_trigger(f"light {nth + 1} is due", self._light_due(guard, later_s)))
                 found.append(event)
         return found
+
+    def _light_due(self, guard: Guard | None, later_s: float) -> Tests:
+        """Return the tests for a change of a light after a guard."""
+        return self._after(guard, later_s)
 
     def _latest(self, time_s: float) -> Guard | None:
         """Return the last guard that had come true by a time."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from basu.cli.driving import add_config, add_scoring
 from basu.cli.later import later
 from basu.outcome import EXIT_CODES
-from basu.running.scenario_runs.options import ScenarioOptions
+from basu.running.scenario_runs.options import PLAYERS, ScenarioOptions
 from basu.settings.command_line import add_options
 
 FORMS = ("text", "ascii", "svg", "dot", "json")  # of a drawn tree
@@ -92,4 +92,11 @@ def _add_export(export: argparse.ArgumentParser) -> None:
         required=True,
         metavar="PATH",
         help="FILE.xosc for one case, or a folder, which gets a file for each case",
+    )
+    export.add_argument(
+        "--for",
+        dest="player",
+        choices=PLAYERS,
+        default=PLAYERS[0],
+        help="the program that plays it: esmini (and others of version 1.2) or ScenarioRunner (default: %(default)s)",
     )

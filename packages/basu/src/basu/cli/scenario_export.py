@@ -14,7 +14,7 @@ from basu.running.scenario_runs.placed_cases import export_cases
 def run(arguments: argparse.Namespace) -> int:
     """Write cases as OpenSCENARIO files with their roads beside them; a case that cannot be written is named."""
     written = refused = 0
-    for one in export_cases(options_of(ScenarioOptions, arguments), arguments.output):
+    for one in export_cases(options_of(ScenarioOptions, arguments), arguments.output, arguments.player):
         if one.refusal:
             refused += 1
             print(f"basu: {one.refusal}", file=sys.stderr)

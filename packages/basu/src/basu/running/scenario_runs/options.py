@@ -10,6 +10,9 @@ from basu.errors import UserError
 from basu.options.drive import DriveOptions
 from basu.settings.option import Settings, option
 
+PLAYERS = ("esmini", "scenario-runner")
+"""The programs for which `basu scenario export` writes a case; the first is the default."""
+
 
 def processors() -> int:
     """The number of processors that this process may use."""

@@ -13,6 +13,7 @@ from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.routing import lane_graph, plan
 from basu.running.scenario_runs.maps_of_cases import maps_of, with_maps
 from basu.running.scenario_runs.one_case import check_town
+from basu.running.scenario_runs.options import PLAYERS
 from basu.scenarios.cases import cases_of
 from basu.scenarios.tree_picture import draw
 from basu.simulator import simulator_for
@@ -83,13 +84,14 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     return call_scenario(playable.case.name, partial(draw, one.placed.scenario, form))
 
 
-def export_cases(options: ScenarioOptions, output: Path) -> Iterator[Exported]:
+def export_cases(options: ScenarioOptions, output: Path, player: str = PLAYERS[0]) -> Iterator[Exported]:
     """Write the cases that ``options.what`` means as OpenSCENARIO files, and yield what came of each.
 
     Args:
         options: the cases, and the simulator that has their maps.
         output: FILE.xosc for one case, or a folder, which gets CASE_exported.xosc for each. A file is a case with the
             name of the file. It needs another name than the exported case has.
+        player: one of ``PLAYERS``.
 
     Raises:
         UserError: there is no such case, several are to be one file, or basu-openscenario is not installed.
@@ -103,7 +105,7 @@ def export_cases(options: ScenarioOptions, output: Path) -> Iterator[Exported]:
         name = one.playable.case.name
         path = output if output.suffix == EXPORT else output / f"{name}_exported{EXPORT}"
         try:
-            export(one.playable, one.placed.scenario, one.carla_map.to_opendrive(), path)
+            export(one.playable, one.placed.scenario, one.carla_map.to_opendrive(), path, player)
         except ScenarioError as error:
             yield Exported(name, path, str(error))
         else:

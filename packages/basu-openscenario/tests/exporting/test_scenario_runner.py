@@ -1,0 +1,169 @@
+"""Claims about cases for ScenarioRunner: of version 1.0, with a controller that follows their trajectories."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+
+import carla
+import pytest
+from lxml import etree
+
+import linden
+from basu.episode.spec import description_of
+from basu.errors import ScenarioError
+from basu.managers.placed_scenario import place_scenario
+from basu.routing import lane_graph, plan
+from basu.scenarios.cases import by_id
+from basu.scenarios.stage import EGO
+from basu_openscenario.exporting.case_export import SCENARIO_RUNNER, export_case
+from basu_openscenario.exporting.phases import Guard
+from basu_openscenario.exporting.scenario_runner import ScenarioRunnerWriter
+from basu_openscenario.exporting.timed_trajectory import TimedTrajectory
+from fakes import asam
+
+Write = Callable[[str], Path]
+
+FRAME_S = 0.05
+CASES = ("red_light_runner_1", "cut_in_before_stop_1", "pedestrian_crossing_1", "static_object_1")
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Write:
+    """Writes a case of Linden for ScenarioRunner by its id, once."""
+    text = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
+    town = carla.Map("Linden", text)
+    lanes = lane_graph.build(town)
+    folder = tmp_path_factory.mktemp("exported")
+
+    @cache
+    def make(name: str) -> Path:
+        playable = by_id(name)
+        placed = place_scenario(playable, plan(town, description_of(playable, town), lanes), town, own=True)
+        path = folder / f"{name}.xosc"
+        export_case(playable, placed.scenario, text, path, SCENARIO_RUNNER)
+        return path
+
+    return make
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_is_of_the_version_that_it_takes(written: Write, name: str) -> None:
+    path = written(name)
+    document = etree.parse(path)
+    assert asam.scenario_issues(path) == []
+    assert document.find("FileHeader").get("revMinor") == "0"
+    assert document.find(".//LogicFile").get("filepath") == "Linden"
+    assert not path.with_name("Linden.xodr").exists()
+    names = [one.get("name") for one in document.iter("Condition")]
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_actor_has_the_controller_beside_the_file(written: Write, name: str) -> None:
+    path = written(name)
+    actors = etree.parse(path).findall(".//Init/Actions/Private")
+    assert EGO in {one.get("entityRef") for one in actors}
+    for one in actors:
+        (module,) = one.findall(".//Controller/Properties/Property[@name='module']")
+        assert "class TimedTrajectory" in path.with_name(module.get("value")).read_text("utf-8")
+        assert all(200.0 < float(place.get("z")) < 300.0 for place in one.iterfind(".//WorldPosition"))
+
+
+def test_lights_are_named_by_their_places(written: Write) -> None:
+    lights = etree.parse(written("red_light_runner_1")).findall(".//TrafficSignalStateAction")
+    assert sorted(one.get("state") for one in lights) == ["Green", "Red", "Red", "Red"]
+    assert all(one.get("name").startswith("pos=") for one in lights)
+
+
+def test_a_departure_follows_the_end_of_the_motion(written: Write) -> None:
+    """ScenarioRunner waits for a delay before it looks at a condition, so that no departure may have one."""
+    document = etree.parse(written("cut_in_before_stop_1"))
+    leaving = document.xpath(
+        "//Event[.//DeleteEntityAction]/StartTrigger//Condition[.//StoryboardElementStateCondition]"
+    )
+    assert leaving
+    assert {float(one.get("delay")) for one in leaving} == {0.0}
+
+
+def test_a_light_that_changes_later_is_refused() -> None:
+    writer = ScenarioRunnerWriter(SimpleNamespace(step_s=0.01), None)  # type: ignore[arg-type]
+    with pytest.raises(ScenarioError, match="a light that changes some time after a trigger"):
+        writer._light_due(Guard(None, 0.0, 3.0, None), 2.0)  # type: ignore[arg-type]
+
+
+class Actor:
+    """An actor in a world whose frames have ``FRAME_S``, which moves as it is told."""
+
+    def __init__(self, kind: str) -> None:
+        self.type_id, self.is_alive = kind, True
+        self.place, self.frame = carla.Transform(), 0
+        self.velocity, self.turn_deg_s = carla.Vector3D(), 0.0
+
+    def get_world(self) -> SimpleNamespace:
+        now = SimpleNamespace(elapsed_seconds=self.frame * FRAME_S, delta_seconds=FRAME_S)
+        return SimpleNamespace(get_snapshot=lambda: SimpleNamespace(timestamp=now))
+
+    def get_transform(self) -> carla.Transform:
+        return self.place
+
+    def set_transform(self, place: carla.Transform) -> None:
+        self.place = place
+
+    def get_velocity(self) -> carla.Vector3D:
+        return self.velocity
+
+    def set_target_velocity(self, velocity: carla.Vector3D) -> None:
+        self.velocity = velocity
+
+    def set_target_angular_velocity(self, turn: carla.Vector3D) -> None:
+        self.turn_deg_s = turn.z
+
+    def get_control(self) -> carla.WalkerControl:
+        return carla.WalkerControl()
+
+    def apply_control(self, control: carla.WalkerControl) -> None:
+        self.velocity = control.direction * control.speed
+
+    def tick(self) -> None:
+        self.frame += 1
+        self.place.location += self.velocity * FRAME_S
+        self.place.rotation.yaw += self.turn_deg_s * FRAME_S
+
+
+@pytest.mark.parametrize("kind", ["vehicle.tesla.model3", "walker.pedestrian.0001", "static.prop.box01"])
+def test_the_controller_is_at_each_point_at_its_time(kind: str) -> None:
+    actor = Actor(kind)
+    controller = TimedTrajectory(actor)
+    controller.run_step()
+    assert actor.velocity.length() == 0.0
+    way = [(1.0, 0.0, 0.0), (3.0, 10.0, 0.0), (5.0, 10.0, 4.0)]
+    controller.update_waypoints(
+        [carla.Transform(carla.Location(x, y)) for _, x, y in way], [time_s for time_s, *_ in way]
+    )
+    for time_s, x, y in way:
+        while actor.frame * FRAME_S < time_s - 1e-6:
+            controller.run_step()
+            actor.tick()
+        assert math.dist((actor.place.location.x, actor.place.location.y), (x, y)) < 0.01
+    assert controller.check_reached_waypoint_goal()
+    for _ in range(20):
+        controller.run_step()
+        actor.tick()
+    assert math.dist((actor.place.location.x, actor.place.location.y), way[-1][1:]) < 0.01
+
+
+def test_an_actor_that_was_blocked_does_not_jump() -> None:
+    actor = Actor("vehicle.tesla.model3")
+    controller = TimedTrajectory(actor)
+    controller.update_waypoints([carla.Transform(), carla.Transform(carla.Location(50.0, 0.0))], [0.0, 10.0])
+    for _ in range(100):
+        controller.run_step()
+        actor.frame += 1  # it is held for five seconds
+    assert actor.velocity.length() == pytest.approx(5.0 + 2.0, abs=0.01)
+
+
+def test_a_trajectory_without_times_is_refused() -> None:
+    with pytest.raises(ValueError, match="needs a trajectory with times"):
+        TimedTrajectory(Actor("vehicle.tesla.model3")).update_waypoints([carla.Transform()])
