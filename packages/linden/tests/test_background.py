@@ -120,7 +120,7 @@ with tempfile.NamedTemporaryFile() as file:
 """
 
 
-def test_threads_share_one_heap_where_they_are_told_to() -> None:
+def test_threads_share_one_heap_after_the_call() -> None:
     counts = [
         int(subprocess.check_output([sys.executable, "-c", HEAPS.format(shared=shared)])) for shared in (True, False)
     ]
