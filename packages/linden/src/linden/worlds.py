@@ -368,7 +368,8 @@ class Worlds:
 
         Depth is (K, H, W) in m. Semantic pictures are (K, H, W) tags of CARLA. Pictures of ``kind`` "rgb" are
         (K, H, W, 3) bytes. Their ``size`` is width and height in pixels. The horizontal angle ``fov`` is in degrees.
-        The arguments ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of that kind.
+        The arguments ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of
+        that kind.
 
         Raises:
             UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
