@@ -7,10 +7,11 @@ It needs ``pip install linden-gym 'basu[sb3]'``, and writes policy.npz, curve.cs
 
 The same seed gives the same policy on the same machine. The reward is that of the environment, and four things help to
 learn it. Most episodes begin at random places along the route, so that a driver sees all of it from the start. The
-weights of discomfort and offset, and the cost of an early end, grow to their own values once the driver knows the way:
-a driver that still tries at random is never comfortable, and would learn to stand. An episode ends when the vehicle has
-stood for 5 s. Driving too fast to stop at a stop sign costs something long before the line, and a driver that stops
-there in comfort pays nothing. The drives that choose the policy are without help, from the route's beginning.
+costs of an infraction and of an early end grow to their own values once the driver knows the way, and the weights of
+discomfort and offset once it obeys stop signs: a driver that still tries at random is never comfortable, and would
+learn to stand. An episode ends when the vehicle has stood for 5 s. Driving too fast to stop at a stop sign costs
+something long before the line, and a driver that stops there in comfort pays nothing. The drives that choose the policy
+are without help, from the route's beginning.
 PPO: Schulman et al. 2017, "Proximal Policy Optimization Algorithms".
 """
 
@@ -37,9 +38,10 @@ from linden_gym.starts import LAST_M
 OFF_LANE_M, STANDING_MPS, STANDING_ACTIONS = 2.5, 0.1, 25
 AWAY_SHARE = 0.8  # of the episodes, which begin at a random place of the route
 KNOWN_SHARE = 0.85  # of the rest of the route, which is driven in the mean before the weights grow
-COMFORT_SHARE = 0.4  # of the training, in which the weights grow from 0 to their own values
-FIRST_FAILURE = 0.2  # of the cost of an early end, before it grows
-TOO_FAST = -0.5  # for a second with 1 m/s more than `fastest_mps`
+STRICT_SHARE, COMFORT_SHARE = 0.1, 0.2  # of the training, in which the one and then the other grows from 0 to 1
+OBEYED = 0.3  # infractions of an episode in the mean, at most, before comfort grows
+SPARED = 0.8  # of the cost of an infraction and of an early end, before they grow
+TOO_FAST = -2.0  # for a second with 1 m/s more than `fastest_mps`
 BRAKING_MPS2, BEFORE_LINE_M = 0.8, 1.0
 GAMMA = 0.995
 SETTINGS = {"n_steps": 64, "batch_size": 2048, "n_epochs": 6, "gamma": GAMMA, "policy_kwargs": {"log_std_init": -0.7}}
@@ -70,7 +72,7 @@ class TrainingWorlds(VecEnv):
         self.dice = np.random.default_rng(seed)
         self.worlds = gymnasium.make_vec(ID, num_envs=count, autoreset_mode="Disabled", reward=reward)
         self.length_m, self.failure = self.worlds.unwrapped.route.length_m, reward.failure
-        self.comfort, self.ended = 0.0, []
+        self.strict, self.comfort, self.ended = 0.0, 0.0, []
         space = gymnasium.spaces.Box(-np.inf, np.inf, rows(*self._begun(count)).shape[1:], np.float32)
         super().__init__(count, space, self.worlds.single_action_space)
 
@@ -102,9 +104,8 @@ class TrainingWorlds(VecEnv):
             speed_mps, offset_m = seen["ego"][:, 0], seen["ego"][:, 3]
             self.stood = np.where(speed_mps < STANDING_MPS, self.stood + 1, 0)
             gives_up = (np.abs(offset_m) > OFF_LANE_M) | (self.stood > STANDING_ACTIONS * HELD_STEPS)
-            gives_up |= told["infractions"] > 0
             gives_up &= ~(terminated | truncated)
-            reward = reward + self._help(seen, told) + np.where(gives_up, self.failure * self._harshness(), 0.0)
+            reward = reward + self._help(seen, told) + np.where(gives_up, self.failure * (1.0 - self._spared()), 0.0)
             rewards += np.where(over, 0.0, reward)  # what an action that goes on does at a new beginning is not counted
             self.infractions += np.where(over, 0, told["infractions"])
             ends = terminated | truncated | gives_up
@@ -121,16 +122,25 @@ class TrainingWorlds(VecEnv):
         self.infractions[over], self.applied[over] = 0, 0.0
         return rows(seen, self.applied), rewards, over, infos
 
-    def _harshness(self):
-        """Return the share of the cost of an early end that counts now."""
-        return FIRST_FAILURE + (1.0 - FIRST_FAILURE) * self.comfort
+    def know(self, share, infractions, of_training):
+        """Let the weights grow after a rollout with this mean share of the way and of infractions."""
+        if share >= KNOWN_SHARE and self.strict < 1.0:
+            self.strict = min(1.0, self.strict + of_training / STRICT_SHARE)
+        elif share >= KNOWN_SHARE and infractions <= OBEYED:
+            self.comfort = min(1.0, self.comfort + of_training / COMFORT_SHARE)
+
+    def _spared(self):
+        """Return the share of the cost of infractions and early ends that does not count yet."""
+        return SPARED * (1.0 - self.strict)
 
     def _help(self, seen, told):
         """Return what the training adds to the reward of a step."""
         is_near, to_line_m = seen["stop_sign"].T
         too_fast_mps = is_near * np.maximum(0.0, seen["ego"][:, 0] - fastest_mps(to_line_m))
         parts = told["reward_parts"]
-        return TOO_FAST * STEP_S * too_fast_mps - (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
+        spared = (1.0 - self.comfort) * (parts["discomfort"] + parts["offset"])
+        spared += self._spared() * parts["infraction"]
+        return TOO_FAST * STEP_S * too_fast_mps - spared
 
     def close(self):
         self.worlds.close()
@@ -185,12 +195,18 @@ class Curve(BaseCallback):
         tried = ""
         if (self.worlds.comfort == 1.0 and self.rollouts % TRIED_EVERY == 0) or done >= 1.0:
             tried = f"{self._try():.2f}"
-        if ended and np.mean([share for _, share, _ in ended]) >= KNOWN_SHARE:
-            grown = (self.num_timesteps / self.rollouts) / (COMFORT_SHARE * self.actions)
-            self.worlds.comfort = min(1.0, self.worlds.comfort + grown)
+        if ended:
+            _, share, infractions = np.mean(ended, axis=0)
+            self.worlds.know(share, infractions, self.num_timesteps / self.rollouts / self.actions)
         means = [f"{mean:.3f}" for mean in np.mean(ended, axis=0)] if ended else ["", "", ""]
-        comfort, seconds = f"{self.worlds.comfort:.3f}", f"{time.perf_counter() - self.began_s:.1f}"
-        row = [self.num_timesteps, len(ended), *means, comfort, tried, seconds]
+        row = [
+            self.num_timesteps,
+            len(ended),
+            *means,
+            f"{self.worlds.comfort:.3f}",
+            tried,
+            f"{time.perf_counter() - self.began_s:.1f}",
+        ]
         self.table.writerow(row)
         self.file.flush()
         print("  ".join(f"{name} {value}" for name, value in zip(COLUMNS, row, strict=True) if value != ""), flush=True)
