@@ -22,7 +22,7 @@ SPARE_MPS = 2.0
 class TimedTrajectory:
     """Gives an actor the velocity with which the next frame finds it where the trajectory is then.
 
-    ScenarioRunner calls its methods, which are those of its own ``BasicControl``.
+    ScenarioRunner calls its methods, which are those of the base class of its own controllers.
     """
 
     def __init__(self, actor: carla.Actor, _arguments: dict[str, str] | None = None) -> None:
