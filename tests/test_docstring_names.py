@@ -15,7 +15,6 @@ FOREIGN = {
         *("CarlaRecorder.cpp", "CarlaRecorderQuery.cpp", "CarlaReplayer.cpp", "CarlaReplayerHelper.cpp"),
         *("CarlaServer.cpp", "Navigation.cpp", "AddTorqueInDegrees", "LoadEpisode", "EVehicleDoor", "bad_weak_ptr"),
         *(
-            "GetMatrix",
             "carla.RadarDetection",
             "carla.LightManager",
             "carla.CustomV2XEvent",

@@ -17,11 +17,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from basu.metrics.careful_driver.standard_grid import GAPS_M, LATERAL_MPS, MODELS, by_speeds, contacts, speeds_kmh
 
 if TYPE_CHECKING:
-    from basu.metrics.careful_driver.model import CarefulDriver, Flags
+    from basu.metrics.careful_driver.model import CarefulDriver
 
 THEIRS = {"FSM": "FSM", "CC": "CC_human_driver", "RSS": "RSS", "Reg157": "Reg157"}  # names of the program's files
 START, END = "<!-- agreement -->\n", "<!-- /agreement -->"
@@ -77,7 +78,7 @@ def row_of(model: "CarefulDriver", folder: Path) -> tuple[str, int]:
     return f"| {model.name} | {cases:,} | {theirs:,} | {ours:,} | {cases - differ:,} | {differ} |", differ
 
 
-def read(file: Path) -> "Flags":
+def read(file: Path) -> NDArray[np.bool_]:
     """Return the contacts of one table of the public program, (lateral speeds, gaps)."""
     with file.open(newline="") as lines:
         rows = [row["Crash"] == "True" for row in csv.DictReader(lines)]

@@ -20,6 +20,7 @@ def test_the_incident_scores_1_by_the_thesis_and_fails_by_its_passengers(
     words = [
         "run",
         "incident",
+        "--details",
         "--in-process",
         *address,
         "--routes",

@@ -98,7 +98,7 @@ def test_the_record_is_written_and_read_back_whole(tmp_path: Path) -> None:
     [
         ("rubbish", r"SUMO's record .*sumo\.json is no JSON"),
         ("{}", r"sumo\.json holds a record that this version cannot read: KeyError"),
-        ('{"schema_version": 9}', r"sumo\.json has schema version 9, and this version of basu reads 1"),
+        ('{"schema_version": 9}', r"sumo\.json has the schema version 9, and this version of basu reads 1"),
     ],
 )
 def test_a_record_that_is_none_is_refused_in_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:

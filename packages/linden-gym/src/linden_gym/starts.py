@@ -40,8 +40,10 @@ def settled(worlds: Worlds, vehicle: str, waypoints: Sequence[carla.Waypoint]) -
     """
     poses = []
     for waypoint in waypoints:
-        at, turned = waypoint.transform.location, waypoint.transform.rotation
-        poses.append([at.x, at.y, at.z + DROP_M, turned.pitch, turned.yaw, turned.roll])
+        pose = waypoint.transform
+        pose.location.z += DROP_M  # in numbers of 32 bits, as a run does
+        at, turned = pose.location, pose.rotation
+        poses.append([at.x, at.y, at.z, turned.pitch, turned.yaw, turned.roll])
     worlds.spawn(vehicle, poses if len(poses) > 1 else poses[0])
     worlds.set_controls([0.0, 0.0, 1.0])
     limits_kmh = np.full(worlds.count, DEFAULT_SPEED_LIMIT_KMH)

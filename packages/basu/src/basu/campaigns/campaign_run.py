@@ -78,7 +78,8 @@ class CampaignRun(Batch):
             with bar:
                 if not self._looks.is_answered():
                     for _ in self.play(pool.play(self._jobs()), bar):
-                        bar.set_postfix_str(", ".join(f"{name} {n} failed" for name, n in self._failures.items()))
+                        failed = ", ".join(f"{name} {n} failed" for name, n in self._failures.items())
+                        bar.set_postfix_str(failed, refresh=False)
                         if self._looks.is_answered():
                             break
         except KeyboardInterrupt:

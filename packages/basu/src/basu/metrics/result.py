@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 SCHEMA_VERSION = 3
 LATER = frozenset(
-    {"scenarios", "case", "passed", "reasons"}
+    {"scenarios", "case", "passed", "reasons", "careful_drivers"}
 )  # absent where there is nothing, or from an earlier version
 
 

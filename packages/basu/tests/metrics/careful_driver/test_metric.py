@@ -35,7 +35,7 @@ def test_where_none_avoids_the_contact_none_is_left_out() -> None:
 
 
 def test_the_page_has_a_row_for_each_model() -> None:
-    page = "".join(cards(judged(meeting(steady(10.0), braking(10.0, 5.0, 4.0, 6.0)))))
+    page = "".join(cards(judged(meeting(steady(10.0), braking(10.0, 5.0, 4.0, 6.0)))).values())
     for name in ("FSM", "CC", "RSS", "Reg157"):
         assert f'<th scope="row">{name}</th><td>avoided</td>' in page
 
@@ -44,5 +44,5 @@ def test_a_drive_without_encounters_has_neither_line_nor_card() -> None:
     result = judged(meeting(steady(10.0), steady(10.0, 30.0)))
     assert result.metrics["careful_drivers"] == {"encounters": []}
     assert CarefulDrivers().lines(result) == []
-    assert "Careful drivers" not in "".join(cards(result))
+    assert "Careful drivers" not in "".join(cards(result).values())
     assert judged(None).metrics["careful_drivers"] is None
