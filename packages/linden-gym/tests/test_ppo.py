@@ -52,7 +52,7 @@ def test_the_same_seed_gives_the_same_policy_and_curve(training: ModuleType, tmp
 def test_a_driver_that_stops_in_comfort_pays_no_help(training: ModuleType) -> None:
     worlds = training.TrainingWorlds(2, Reward(), seed=0)
     worlds.comfort = 1.0
-    nothing = {"discomfort": np.zeros(2), "offset": np.zeros(2)}
+    nothing = {"discomfort": np.zeros(2), "offset": np.zeros(2), "infraction": np.zeros(2)}
     seen = {"ego": np.zeros((2, 6)), "stop_sign": np.array([[1.0, 20.0], [0.0, 0.0]])}
     seen["ego"][:, 0] = training.fastest_mps(20.0) - 0.01, 11.0
     assert worlds._help(seen, {"reward_parts": nothing}).tolist() == [0.0, 0.0]

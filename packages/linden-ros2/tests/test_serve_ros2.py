@@ -103,6 +103,9 @@ def drive() -> Iterator[Drive]:
 @pytest.fixture(autouse=True)
 def _at_rest(drive: Drive) -> None:
     """At the start and without a control; `apply_control` does not send one that equals the last one it sent."""
+    for _ in range(20):  # commands that were on their way when the last node ended
+        drive.world.tick()
+        time.sleep(0.01)
     drive.control(carla.VehicleControl())
     drive.car.set_transform(drive.start)  # before it meets a house
     drive.world.tick()
