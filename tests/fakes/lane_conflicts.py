@@ -83,7 +83,7 @@ def _velocity(place: Place, t_s: float) -> tuple[float, float]:
 
 
 def _row(place: Place) -> Callable[[float], Row]:
-    """The row of another by time."""
+    """Return the record's row of the other vehicle at each time."""
 
     def row(t_s: float) -> Row:
         (x_m, y_m), (vx_mps, vy_mps) = place(t_s), _velocity(place, t_s)

@@ -5,28 +5,18 @@ import pytest
 from numpy.typing import NDArray
 
 from basu.gym import Reward
+from fakes.route_drivers import Seen, careful, without_signs
 from linden_gym.environment import WorldsVectorEnv
 
 CHEATS = ("stands", "creeps", "runs signs", "races", "weaves", "jerks", "cuts bends", "leaves the route")
 NAMES = ("careful", *CHEATS)
-CRUISE_MPS, BRAKING_MPS2 = 3.6, 0.8
-Seen = dict[str, NDArray[np.float32]]
-
-
-def careful(seen: Seen) -> NDArray[np.float64]:
-    """Actions (N, 2) by the observation alone: along the route at a comfortable pace, with a stop at each stop sign."""
-    to_line_m = np.where(seen["stop_sign"][:, 0] > 0.0, seen["stop_sign"][:, 1], np.inf)
-    wanted_mps = np.minimum(CRUISE_MPS, np.sqrt(2.0 * BRAKING_MPS2 * np.maximum(0.0, to_line_m - 1.0)))
-    x_m, y_m = seen["route"][:, 0].T
-    pedals = np.clip(0.4 * (wanted_mps - seen["ego"][:, 0]), -0.5, 0.25)
-    pedals[to_line_m < 1.2] = -0.4
-    return np.column_stack([pedals, 1.2 * np.arctan2(y_m, x_m)])
+CRUISE_MPS = 3.6
 
 
 def actions_at(step: int, seen: Seen) -> NDArray[np.float32]:
     """Actions of all drivers, in the order of `NAMES`."""
-    actions = careful(seen)
-    blind = careful({**seen, "stop_sign": np.zeros_like(seen["stop_sign"])})
+    actions = careful(seen, CRUISE_MPS)
+    blind = careful(without_signs(seen), CRUISE_MPS)
     speed_mps = seen["ego"][:, 0]
     row = {name: index for index, name in enumerate(NAMES)}
     actions[row["stands"]] = [-1.0, 0.0]

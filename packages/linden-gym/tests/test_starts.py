@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from basu.errors import UserError
 from basu.gym_spaces import Reward
 from basu.metrics.delays import SLOWEST_MPS
+from fakes import route_drivers
+from fakes.route_drivers import Seen
 from linden.errors import UserError as LindenUserError
 from linden.physics.state import BODY
 from linden_gym import ID
@@ -19,23 +21,17 @@ from linden_gym.environment import WorldsVectorEnv
 from linden_gym.starts import LAST_M
 
 START_M = 300.0
-CRUISE_MPS, BRAKING_MPS2 = 4.0, 0.8
-Seen = dict[str, NDArray[np.float32]]
+CRUISE_MPS = 4.0
 
 
 def careful(seen: Seen) -> NDArray[np.float32]:
-    """Actions (N, 2): along the route at a comfortable pace, with a stop at each stop sign."""
-    to_line_m = np.where(seen["stop_sign"][:, 0] > 0.0, seen["stop_sign"][:, 1], np.inf)
-    wanted_mps = np.minimum(CRUISE_MPS, np.sqrt(2.0 * BRAKING_MPS2 * np.maximum(0.0, to_line_m - 1.0)))
-    x_m, y_m = seen["route"][:, 0].T
-    pedals = np.clip(0.4 * (wanted_mps - seen["ego"][:, 0]), -0.5, 0.25)
-    pedals[to_line_m < 1.2] = -0.4
-    return np.column_stack([pedals, 1.2 * np.arctan2(y_m, x_m)]).clip(-1.0, 1.0).astype(np.float32)
+    """Return actions (N, 2) of a careful driver, as the environments take them."""
+    return route_drivers.careful(seen, CRUISE_MPS).clip(-1.0, 1.0).astype(np.float32)
 
 
 def blind(seen: Seen) -> NDArray[np.float32]:
-    """The same without a look at stop signs."""
-    return careful({**seen, "stop_sign": np.zeros_like(seen["stop_sign"])})
+    """Return the actions of that driver if it sees no stop sign."""
+    return careful(route_drivers.without_signs(seen))
 
 
 @pytest.fixture(scope="module")

@@ -2,24 +2,19 @@
 
 import math
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
+from typing import Any
 
-import carla
 import numpy as np
 import pytest
 from lxml import etree
 
-import linden
-from basu.episode.spec import description_of
 from basu.errors import ScenarioError, UserError
-from basu.managers.placed_scenario import place_scenario
-from basu.routing import lane_graph, plan
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.running.scenario_runs.placed_cases import export_cases
 from basu.scenarios.cases import by_id, cases_of
 from basu.scenarios.stage import EGO
-from basu_openscenario.exporting.case_export import STEP_S, Exported, export_case
+from basu_openscenario.exporting.case_export import ESMINI, STEP_S, Exported
 from basu_openscenario.exporting.entry import export
 from basu_openscenario.exporting.motions import at_rest, thinned
 from basu_openscenario.playing.player import make_player
@@ -41,21 +36,9 @@ LATE_S, APART_M = 0.05, 0.25
 
 
 @pytest.fixture(scope="module")
-def exported(tmp_path_factory: pytest.TempPathFactory) -> Export:
-    """Exports a case of Linden by its id, once."""
-    text = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
-    town = carla.Map("Linden", text)
-    lanes = lane_graph.build(town)
-    folder = tmp_path_factory.mktemp("exported")
-
-    @cache
-    def make(name: str) -> tuple[Exported, Path]:
-        playable = by_id(name)
-        placed = place_scenario(playable, plan(town, description_of(playable, town), lanes), town, own=True)
-        path = folder / f"{name}.xosc"
-        return export_case(playable, placed.scenario, text, path), path
-
-    return make
+def exported(export_for: Callable[[str, str], tuple[Exported, Path]]) -> Export:
+    """Exports a case of Linden for esmini by its id, once."""
+    return lambda name: export_for(name, ESMINI)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -127,10 +110,10 @@ def test_what_cannot_be_expressed_is_refused_by_name(exported: Export, name: str
         exported(name)
 
 
-def test_the_same_case_gives_the_same_bytes(exported: Export, tmp_path: Path) -> None:
+def test_the_same_case_gives_the_same_bytes(exported: Export, export_for: Any, tmp_path: Path) -> None:
     _, path = exported(CASES[0])
     before = path.read_bytes()
-    exported.cache_clear()  # type: ignore[attr-defined]
+    export_for.cache_clear()
     assert exported(CASES[0])[1].read_bytes() == before
 
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,14 +9,9 @@ import carla
 import pytest
 from lxml import etree
 
-import linden
-from basu.episode.spec import description_of
 from basu.errors import ScenarioError
-from basu.managers.placed_scenario import place_scenario
-from basu.routing import lane_graph, plan
-from basu.scenarios.cases import by_id
 from basu.scenarios.stage import EGO
-from basu_openscenario.exporting.case_export import SCENARIO_RUNNER, export_case
+from basu_openscenario.exporting.case_export import SCENARIO_RUNNER, Exported
 from basu_openscenario.exporting.phases import Guard
 from basu_openscenario.exporting.scenario_runner import ScenarioRunnerWriter
 from basu_openscenario.exporting.timed_trajectory import TimedTrajectory
@@ -30,22 +24,9 @@ CASES = ("red_light_runner_1", "cut_in_before_stop_1", "pedestrian_crossing_1", 
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Write:
+def written(export_for: Callable[[str, str], tuple[Exported, Path]]) -> Write:
     """Writes a case of Linden for ScenarioRunner by its id, once."""
-    text = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
-    town = carla.Map("Linden", text)
-    lanes = lane_graph.build(town)
-    folder = tmp_path_factory.mktemp("exported")
-
-    @cache
-    def make(name: str) -> Path:
-        playable = by_id(name)
-        placed = place_scenario(playable, plan(town, description_of(playable, town), lanes), town, own=True)
-        path = folder / f"{name}.xosc"
-        export_case(playable, placed.scenario, text, path, SCENARIO_RUNNER)
-        return path
-
-    return make
+    return lambda name: export_for(name, SCENARIO_RUNNER)[1]
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -94,7 +75,7 @@ def test_a_light_that_changes_later_is_refused() -> None:
 
 
 class Actor:
-    """An actor in a world whose frames have ``FRAME_S``, which moves as it is told."""
+    """An actor in a world whose frames have ``FRAME_S``, which moves by the transforms that it receives."""
 
     def __init__(self, kind: str) -> None:
         self.type_id, self.is_alive = kind, True

@@ -19,7 +19,7 @@ MOST = {Kind.WHEELCHAIR: 1, Kind.PUSHCHAIR: 2}
 
 
 class Space(enum.Enum):
-    """Where a passenger rides."""
+    """The kind of place in the cabin that a passenger takes."""
 
     SEAT = "seat"
     STANDING = "standing"
@@ -27,7 +27,7 @@ class Space(enum.Enum):
 
 
 class Refusal(enum.Enum):
-    """Why a person does not fit in."""
+    """The reason why a person cannot board a vehicle."""
 
     FULL = "full"
     NO_SEAT = "no_seat"  # for a person that cannot ride standing

@@ -38,7 +38,7 @@ class PersonsPart(TypedDict):
 
 @closed
 class WaitsPart(TypedDict):
-    """Waiting times in s."""
+    """The waiting times of persons at stops, in s."""
 
     mean_s: Annotated[
         float | None, "of all persons, until they boarded, gave up, or the service ended: no person is left out"

@@ -96,7 +96,7 @@ class Journey:
 
 @dataclass(slots=True)
 class _Doors:
-    """The state of one vehicle."""
+    """One vehicle of the service: its cabin, the phase of its doors, and its calls."""
 
     cabin: Cabin = field(default_factory=Cabin)
     phase: Phase = Phase.DRIVING

@@ -37,5 +37,5 @@ class AttachedPublisher:
         return f"domain {self._node.domain}, {reach}, topics /clock, /tf and /carla/..."
 
     def close(self) -> None:
-        """Leave the domain."""
+        """Remove this node from its ROS 2 domain; it publishes and hears nothing more."""
         self._node.close()

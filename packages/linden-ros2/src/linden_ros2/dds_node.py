@@ -147,7 +147,7 @@ class DdsNode:
         return True
 
     def close(self) -> None:
-        """Leave the domain."""
+        """Remove this node from its ROS 2 domain; it publishes and hears nothing more."""
         self._waits, self._writers, self._readers, self._same = {}, {}, {}, {}
         self._publishers = self._participant = None
 

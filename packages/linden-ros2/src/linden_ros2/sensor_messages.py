@@ -288,7 +288,7 @@ BRIDGE = Convention(
         "sensor.camera.normals": ("bgra8", _as_is),
     }
 )
-"""The ros-bridge's."""
+"""The encodings and fields of messages as CARLA's ros-bridge has them."""
 NATIVE = Convention(
     {
         **dict.fromkeys(BRIDGE.pictures, ("bgra8", _as_is)),

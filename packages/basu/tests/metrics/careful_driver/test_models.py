@@ -15,7 +15,7 @@ CUT_IN, DECELERATION = Situation.CUT_IN, Situation.DECELERATION
 
 
 def view(**values: float) -> View:
-    """One moment: 10 m/s behind 5 m/s, in the path, if nothing else is said."""
+    """Return one moment, by default at 10 m/s behind a vehicle in the path at 5 m/s."""
     usual = {"gap_m": 20.0, "length_m": 4.3, "clear_m": -1.9, "own_mps": 10.0, "own_mps2": 0.0, "other_mps": 5.0}
     columns: dict[str, Any] = {
         name: np.array([value]) for name, value in {**usual, "across_mps": 0.0, **values}.items()

@@ -27,7 +27,7 @@ TREND_S = 0.5  # over which the other's braking and lateral speed before the con
 
 
 class Answer(NamedTuple):
-    """What came of one model."""
+    """The outcome of an encounter if one model of a careful driver had driven."""
 
     model: str
     avoids: bool

@@ -22,7 +22,7 @@ MARGIN_S = 0.1  # the own vehicle has passed so long before the other comes into
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fsm:
-    """The model with its parameters."""
+    """Fuzzy safety model: a model of a careful driver, with its parameters as attributes."""
 
     name: str = "FSM"
     delay_s: float = DELAY_S

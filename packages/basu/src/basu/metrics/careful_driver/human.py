@@ -11,17 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.careful_driver.model import DELAY_S, Situation, ramped_mps2
+from basu.metrics.careful_driver.model import DELAY_S, HEADWAY_S, Situation, ramped_mps2
 
 if TYPE_CHECKING:
     from basu.metrics.careful_driver.model import Flags, Numbers, View
 
-HEADWAY_S = 2.0  # a choice of the Joint Research Centre's program: the gap behind a vehicle of the own speed
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarefulHuman:
-    """The model with its parameters."""
+    """Careful and competent human of UN Regulation 157: a model of a driver, with its parameters as attributes."""
 
     name: str = "CC"
     delay_s: float = DELAY_S
@@ -45,7 +43,7 @@ class CarefulHuman:
         return ramped_mps2(before_mps2, step_s)
 
     def following_m(self, speed_mps: Numbers) -> Numbers:
-        """Return a headway of 2 s."""
+        """Return the gaps, m, at which the model follows: what it drives in ``HEADWAY_S``."""
         return HEADWAY_S * speed_mps
 
     def _cuts_in(self, view: View) -> Flags:

@@ -22,6 +22,7 @@ G_MPS2 = 9.81
 BRAKE_MPS2 = 0.774 * G_MPS2
 BRAKE_JERK_MPS3 = 12.65
 DELAY_S = 0.75  # from perceived risk to braking, likewise
+HEADWAY_S = 2.0  # a choice of the Joint Research Centre's program: the gap behind a vehicle of the own speed
 
 
 class Situation(enum.Enum):

@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.careful_driver.model import Situation
+from basu.metrics.careful_driver.model import HEADWAY_S, Situation
 
 if TYPE_CHECKING:
     from basu.metrics.careful_driver.model import Flags, Numbers, View
 
-HEADWAY_S = 2.0  # likewise
 SLACK_S = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reg157:
-    """The model with its parameters."""
+    """Bound of UN Regulation 157 on the time to collision: a model of a driver, its parameters as attributes."""
 
     name: str = "Reg157"
     delay_s: float = 0.35
@@ -56,5 +55,5 @@ class Reg157:
         return np.full_like(view.gap_m, self.brakes_mps2)
 
     def following_m(self, speed_mps: Numbers) -> Numbers:
-        """Return a headway of 2 s."""
+        """Return the gaps, m, at which the model follows: what it drives in ``HEADWAY_S``."""
         return HEADWAY_S * speed_mps

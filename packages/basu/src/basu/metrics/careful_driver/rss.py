@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rss:
-    """The model with its parameters."""
+    """Responsibility-sensitive safety: a model of a careful driver, with its parameters as attributes."""
 
     name: str = "RSS"
     delay_s: float = DELAY_S

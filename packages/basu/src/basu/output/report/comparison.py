@@ -118,7 +118,7 @@ def reasons(runs: Sequence[RunRecord]) -> list[str]:
 
 
 def remarks(runs: Sequence[RunRecord], *, conditions: bool = True) -> list[str]:
-    """Return what has to be said before these runs are compared: conditions (if wanted), routes, rules."""
+    """Return the warnings of a comparison: runs that differ in conditions (if wanted), routes or rules."""
     found = _conditions(runs) if conditions else []
     routes = {f"{run.result.meta['route']} of {run.result.meta['town']}" for run in runs if run.result.meta}
     if len(routes) > 1 or not on_one_route(runs):

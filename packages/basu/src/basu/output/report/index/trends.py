@@ -16,7 +16,7 @@ AGENTS_END = ("none", Fault.AGENT.name.lower())  # runs that ended for another r
 
 
 class VersionFigures(NamedTuple):
-    """The runs of one version."""
+    """The runs of one version of an agent, and the means of their scores."""
 
     version: str
     first: str  # when the first of them started
