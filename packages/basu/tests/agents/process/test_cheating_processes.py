@@ -229,6 +229,19 @@ def test_output_is_bounded_in_each_run_and_steers_no_terminal(tmp_path: Path) ->
     assert done.stderr.count(b"?[2Jlast words") == 2
 
 
+def test_the_end_of_an_agent_with_children_ends_no_other_process(tmp_path: Path) -> None:
+    """An agent's children have numbers in their namespace that other processes have outside it."""
+    with contextlib.ExitStack() as others:
+        remote = cheat(tmp_path, "[subprocess.Popen(['sleep', '60']) for _ in range(60)]")
+        started = [others.enter_context(subprocess.Popen(["sleep", "60"])) for _ in range(60)]
+        remote.own_route()
+        remote._process.kill()
+        ended = [each.pid for each in started if each.poll() is not None]
+        for each in started:
+            each.kill()
+    assert ended == []
+
+
 def test_a_control_character_in_two_parts_steers_no_terminal() -> None:
     agents_end, keepers_end = os.pipe()[::-1]
     shown, written = os.pipe()

@@ -166,9 +166,7 @@ def _keep(child: int, control: int, outputs: list[int], ended: int | None) -> No
     try:
         end = _watch(child, socket.socket(fileno=os.dup(control)), _Outputs(outputs))
     finally:
-        with contextlib.suppress(OSError):
-            os.kill(child, signal.SIGKILL)
-        end = _end_all(child, end)
+        end = _end_all(child, end, has_orphans=ended is None)
     if ended is not None:
         os.set_blocking(ended, False)
         with contextlib.suppress(OSError, ValueError):
@@ -274,17 +272,22 @@ def _reaped(child: int) -> Ended | None:
     return None
 
 
-def _end_all(child: int, end: Ended | None) -> Ended | None:
-    """Kill children until there are none, and return the child's end with the memory of all.
+def _end_all(child: int, end: Ended | None, *, has_orphans: bool) -> Ended | None:
+    """Kill the child, and the keeper's other children, until there are none; return the end with the memory of all.
 
-    The orphans of a killed process become children of the keeper. ``end`` is the child's, if it has ended.
+    Args:
+        child: the keeper's own child.
+        end: its end, if it has ended.
+        has_orphans: whether orphans of the agent's process become children of the keeper. In a namespace of processes
+            they become children of its first process and end with it. The keeper then shares the mounts of that
+            namespace, so ``/proc`` gives identifiers that belong to other processes outside it.
     """
     memory = _PeakMemory()
     if end is not None:
         memory.add(end.status, end.peak_kb)
     deadline_s = time.monotonic() + END_LIMIT_S
     while time.monotonic() < deadline_s:
-        for pid in _children():
+        for pid in _children() if has_orphans else [child] if end is None else []:
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
         try:
@@ -301,7 +304,7 @@ def _end_all(child: int, end: Ended | None) -> Ended | None:
 
 
 def _children() -> list[int]:
-    """The children of this process; none where ``/proc`` shows another namespace, which ends its own."""
+    """The children of this process, which must be in the namespace of processes that ``/proc`` shows."""
     own, found = os.getpid(), []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError, IndexError):
