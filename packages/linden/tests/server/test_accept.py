@@ -19,10 +19,16 @@ class Listening:
     def __init__(self, ports: Ports) -> None:
         self.ports = ports
         self.now_s = 100.0
+        self.seconds_a_look = 0.0
         self.inside: list[Peer] = []
         self.outside: list[socket.socket] = []
         self.selector = selectors.DefaultSelector()
-        self.acceptor = Acceptor(ports, self.selector, lambda: self.now_s, self.inside.append, self.close_peer)
+        self.acceptor = Acceptor(ports, self.selector, self.look, self.inside.append, self.close_peer)
+
+    def look(self) -> float:
+        """Return the time on the clock, which goes on by each look."""
+        self.now_s += self.seconds_a_look
+        return self.now_s
 
     def close_peer(self, peer: Peer) -> None:
         self.inside.remove(peer)
@@ -55,6 +61,16 @@ def test_a_crowd_is_accepted_at_once(server: Listening) -> None:
     server.turn()
     assert [sum(type(peer) is kind for peer in server.inside) for kind in (RpcPeer, StreamPeer)] == [40, 20]
     assert [peer.number for peer in server.inside] == list(range(1, 61))
+
+
+def test_connected_clients_have_their_turn_where_each_connection_takes_long(server: Listening) -> None:
+    server.connect(server.ports.rpc, 40)
+    server.seconds_a_look = 0.001
+    server.turn()
+    assert 1 <= len(server.inside) <= 6
+    for _ in range(40):
+        server.turn()
+    assert len(server.inside) == 40
 
 
 def test_a_subscriber_that_says_nothing_is_closed_and_a_client_may_be_silent(server: Listening) -> None:

@@ -24,6 +24,11 @@ SILENT_SUBSCRIBER_S = 10.0
 """How long a stream connection may take to say its four bytes; the official client sends them on connecting."""
 ACCEPTED_AT_ONCE = 64
 """Connections accepted on a port before the connected clients have their turn."""
+ACCEPT_S = 0.005
+"""For how long connections are accepted on a port before the connected clients have their turn.
+
+Each takes some calls of the system, which give Python's lock away. While a thread works in the background, each call
+waits up to a millisecond to have it back, and 64 connections take 0.3 s."""
 CLOSED_AT_ONCE = 16
 """Silent connections that are closed together when the limit is reached."""
 RESERVED_FILES = 64
@@ -125,8 +130,9 @@ class Acceptor:
     def _accept(self, listener: socket.socket, kind: type[Peer], gate: Gate | None = None) -> None:
         if self._count >= self._most and self._closed_until_s is None:
             self._close_silent(f"{self._count} connections are open")
+        until_s = self._clock() + ACCEPT_S
         for _ in range(ACCEPTED_AT_ONCE):
-            if self._count >= self._most or self._closed_until_s is not None:
+            if self._count >= self._most or self._closed_until_s is not None or self._clock() > until_s:
                 return
             try:
                 sock, _ = listener.accept()

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import young_collector
 from linden.protocol.values.enums import MapLayer, SemanticTag
 from linden.protocol.values.episode import EnvironmentObject
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
@@ -132,31 +133,39 @@ class Scene:
     def world_boxes(self) -> tuple[BoundingBox, ...]:
         """Every box as clients see it, in their order."""
         columns = (self.boxes[name].tolist() for name in ("centre", "half", "yaw_rad"))
-        return tuple(
-            BoundingBox(Vector3D(*centre), Vector3D(*half), _turned(yaw))
-            for centre, half, yaw in zip(*columns, strict=True)
-        )
+        with young_collector():
+            return tuple(
+                BoundingBox(Vector3D(*centre), Vector3D(*half), _turned(yaw))
+                for centre, half, yaw in zip(*columns, strict=True)
+            )
+
+    @cached_property
+    def box_names(self) -> tuple[str, ...]:
+        """The name of each box: that of its thing, what it is, and its number within the thing."""
+        is_light = (self.things["kind"] == ObjectKind.TRAFFIC_LIGHT).tolist()
+        names, last, nth = [], -1, 0
+        for thing, tag in zip(self.boxes["thing"].tolist(), self.boxes["tag"].tolist(), strict=True):
+            nth = nth + 1 if thing == last else 0
+            last = thing
+            names.append(f"{self.thing_names[thing]}_{_TAG_NAMES[tag] if is_light[thing] else 'SM'}_{nth}")
+        return tuple(names)
 
     @cached_property
     def objects(self) -> tuple[EnvironmentObject, ...]:
         """Every box with its name, its id and the place of its thing, in their order."""
         bases, yaws = self.things["base"].tolist(), self.things["yaw_rad"].tolist()
-        poses = [Transform(Vector3D(*base), _turned(yaw)) for base, yaw in zip(bases, yaws, strict=True)]
-        is_light = (self.things["kind"] == ObjectKind.TRAFFIC_LIGHT).tolist()
-        objects, last, nth = [], -1, 0
-        for box, thing, tag in zip(
-            self.world_boxes, self.boxes["thing"].tolist(), self.boxes["tag"].tolist(), strict=True
-        ):
-            nth = nth + 1 if thing == last else 0
-            last = thing
-            name = f"{self.thing_names[thing]}_{_TAG_NAMES[tag] if is_light[thing] else 'SM'}_{nth}"
-            objects.append(EnvironmentObject(poses[thing], box, object_id(name), name, tag))
-        return tuple(objects)
+        columns = (self.boxes["thing"].tolist(), self.boxes["tag"].tolist())
+        with young_collector():
+            poses = [Transform(Vector3D(*base), _turned(yaw)) for base, yaw in zip(bases, yaws, strict=True)]
+            return tuple(
+                EnvironmentObject(poses[thing], box, object_id(name), name, tag)
+                for box, name, thing, tag in zip(self.world_boxes, self.box_names, *columns, strict=True)
+            )
 
     @cached_property
     def box_of_id(self) -> dict[int, int]:
         """The row of each box by the id that clients know it by."""
-        return {item.id: number for number, item in enumerate(self.objects)}
+        return {object_id(name): number for number, name in enumerate(self.box_names)}
 
     def boxes_of(self, thing: int) -> NDArray[np.intp]:
         """Return the rows of a thing's boxes."""
