@@ -278,6 +278,7 @@ def test_walls_are_kept_by_their_distance(tmp_path: Path, nothing_is_read: Calla
     first, second = cache.read(road, 1.0), cache.read(road, 2.0)
     assert len(first.wall_feet_m) > 0
     assert first.wall_feet_m.tobytes() != second.wall_feet_m.tobytes()
+    assert len(list(tmp_path.iterdir())) == 3  # one file of facts
     nothing_is_read()
     for kept, walls_beyond_m in ((first, 1.0), (second, 2.0)):
         again = cache.read(road, walls_beyond_m)

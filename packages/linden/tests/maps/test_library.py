@@ -88,7 +88,10 @@ def test_a_library_lets_go_of_maps_that_were_loaded_long_ago(tmp_path: Path) -> 
     loaded = [weakref.ref(library.load(f"Street{number}")) for number in range(MOST_KEPT + 3)]
     gc.collect()
     assert [found() is not None for found in loaded] == [False] * 3 + [True] * MOST_KEPT
-    assert library.load("OpenDriveMap") is sent
+    again = library.load("OpenDriveMap")
+    assert again is not sent  # what was read of it has gone
+    assert (again.text, again.walls) == (sent.text, sent.walls)
+    assert again.ground.planes.tobytes() == sent.ground.planes.tobytes()
 
 
 def test_a_text_is_parsed_once_for_its_facts_and_its_walls(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -107,9 +107,23 @@ def unpack(arrays: Arrays) -> MapFacts:
     )
 
 
+def pack_walls(wall_feet_m: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """Return the feet of walls, (N, 2, 3), as an archive has them."""
+    return {_WALLS: wall_feet_m}
+
+
+def unpack_walls(arrays: Arrays) -> NDArray[np.float64]:
+    """Return what :func:`pack_walls` was given.
+
+    Raises:
+        ValueError, KeyError: these are not such arrays.
+    """
+    return _fitting(_WALLS, arrays[_WALLS], np.dtype(np.float64), (None, 2, 3))
+
+
 def pack_reading(reading: MapReading) -> dict[str, NDArray[Any]]:
     """Return facts and walls as arrays."""
-    return {**pack(reading.facts), _WALLS: reading.wall_feet_m}
+    return {**pack(reading.facts), **pack_walls(reading.wall_feet_m)}
 
 
 def unpack_reading(arrays: Arrays) -> MapReading:
@@ -118,7 +132,7 @@ def unpack_reading(arrays: Arrays) -> MapReading:
     Raises:
         ValueError, TypeError, KeyError: these are not such arrays.
     """
-    return MapReading(unpack(arrays), _fitting(_WALLS, arrays[_WALLS], np.dtype(np.float64), (None, 2, 3)))
+    return MapReading(unpack(arrays), unpack_walls(arrays))
 
 
 def _column(name: str, array: NDArray[Any]) -> NDArray[Any]:

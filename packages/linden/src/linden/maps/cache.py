@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import fingerprint, machine
-from linden.maps.archive import pack_reading, unpack_reading
+from linden.maps.archive import Arrays, pack, pack_walls, unpack, unpack_walls
 from linden.maps.facts import MapFacts
 from linden.maps.reading import MapReading
 from linden.maps.reading_process import read_text
@@ -60,14 +60,24 @@ class MapCache:
     def read(self, text: str, walls_beyond_m: float | None = None) -> MapReading:
         """Return what an OpenDRIVE text says, out of the folder or read by :func:`read_text`.
 
+        Facts and walls have files of their own, so one text with several walls has its facts once.
+
         Raises:
             MapError, UserError, NotWantedError: as of ``read_text``.
         """
-        file = self._folder / f"{_key(text, walls_beyond_m)}.npz"
-        reading = _kept(file)
-        if reading is None:
-            reading = read_text(text, walls_beyond_m)
-            self._write(file, reading)
+        key = _key(text)
+        facts_file, walls_file = self._folder / f"{key}.npz", self._folder / f"{key}-{walls_beyond_m}.npz"
+        facts = _kept(facts_file, unpack)
+        if walls_beyond_m is None and facts is not None:
+            return MapReading(facts)
+        walls_m = None if walls_beyond_m is None or facts is None else _kept(walls_file, unpack_walls)
+        if facts is not None and walls_m is not None:
+            return MapReading(facts, walls_m)
+        reading = read_text(text, walls_beyond_m)
+        if facts is None:
+            self._write(facts_file, pack(reading.facts))
+        if walls_beyond_m is not None:
+            self._write(walls_file, pack_walls(reading.wall_feet_m))
         return reading
 
     def kept(self, name: str, make: Callable[[], bytes], read: Callable[[bytes], Read]) -> Read:
@@ -107,8 +117,8 @@ class MapCache:
         """Keep something else than before under a name."""
         self._keep(self._folder / name, lambda stream: stream.writelines((_digest(content), content)))
 
-    def _write(self, file: Path, reading: MapReading) -> None:
-        self._keep(file, lambda stream: np.savez(stream, **pack_reading(reading)))  # type: ignore[arg-type] # one array could be called allow_pickle
+    def _write(self, file: Path, arrays: dict[str, NDArray[Any]]) -> None:
+        self._keep(file, lambda stream: np.savez(stream, **arrays))  # type: ignore[arg-type] # one array could be called allow_pickle
 
     def _keep(self, file: Path, write: Callable[[IO[bytes]], object]) -> None:
         part = file.with_suffix(f".{os.getpid()}.{next(_PARTS)}.part")
@@ -152,23 +162,23 @@ def _digest(content: bytes) -> bytes:
     return hashlib.sha256(content).digest()
 
 
-def _key(text: str, walls_beyond_m: float | None) -> str:
+def _key(text: str) -> str:
     sources = fingerprint(*(file for pattern in _DERIVING for file in _PACKAGE.glob(pattern)))
-    digest = hashlib.sha256(f"{sources} {machine()} {walls_beyond_m}\n".encode())
+    digest = hashlib.sha256(f"{sources} {machine()}\n".encode())
     digest.update(text.encode())
     return digest.hexdigest()[:32]
 
 
-def _kept(file: Path) -> MapReading | None:
-    """Return what a file holds, None where there is no such file or it is no good."""
+def _kept(file: Path, unpacked: Callable[[Arrays], Read]) -> Read | None:
+    """Return what the arrays in a file stand for, None where there is no such file or it is no good."""
     try:
         with np.load(file, allow_pickle=False) as archive:
             arrays: dict[str, NDArray[Any]] = {name: archive[name] for name in archive.files}
-        reading = unpack_reading(arrays)
+        found = unpacked(arrays)
         os.utime(file)  # so that it counts as used
     except FileNotFoundError:
         return None
     except Exception as error:  # noqa: BLE001 - whatever may be wrong with a file, it can be made anew
         log.info("%s is made anew: %s", file, error)
         return None
-    return reading
+    return found

@@ -87,6 +87,7 @@ class MapLibrary:
             self._files.update({file.stem: file for file in found})
         self._read = reader
         self._loaded: dict[str, LoadedMap] = {}
+        self._sent: tuple[str, Walls] | None = None  # what a client sent, once another map has taken its place
 
     def names(self) -> list[str]:
         """Return the names of all maps as ``get_available_maps`` lists them."""
@@ -109,29 +110,38 @@ class MapLibrary:
             Refusal: there is none of that name.
         """
         bare = _bare(name)
-        if bare not in self._loaded and bare not in self._files:
+        is_sent = bare == GENERATED_MAP and self._sent is not None
+        if bare not in self._loaded and bare not in self._files and not is_sent:
             raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
         return self._loaded.get(bare)
 
     def make(self, name: str) -> LoadedMap:
-        """Return a map of a file, made ready; changes nothing, so that any thread may call it.
+        """Return a map of a file or of a client's text, made ready; changes nothing, so that any thread may call it.
 
         Raises:
             Refusal: its file cannot be used.
         """
         bare = _bare(name)
         try:
-            text = self._files[bare].read_text("utf-8")
-            return LoadedMap(name=bare, text=text, **vars(self._read(text).facts))
+            if bare == GENERATED_MAP and self._sent is not None:
+                text, walls = self._sent
+            else:
+                text, walls = self._files[bare].read_text("utf-8"), Walls()
+            return LoadedMap(name=bare, text=text, walls=walls, **vars(self._read(text).facts))
         except (OSError, UnicodeDecodeError, UserError) as error:
             raise Refusal(f"Map '{name}' cannot be read: {error}") from error
 
     def keep(self, made: LoadedMap) -> None:
-        """Keep a map for the next load of its name; of the maps of files, those loaded last are kept."""
+        """Keep a map for the next load of its name: the maps of files that were loaded last, and a client's last text.
+
+        A text is kept whole, and what was read of it until another map takes its place: that may be hundreds of MB.
+        """
         self._loaded.pop(made.name, None)
+        sent = made if made.name == GENERATED_MAP else self._loaded.pop(GENERATED_MAP, None)
+        if sent is not None:
+            self._sent = sent.text, sent.walls
         self._loaded[made.name] = made
-        of_files = [name for name in self._loaded if name != GENERATED_MAP]
-        for name in of_files[:-MOST_KEPT]:
+        for name in list(self._loaded)[:-MOST_KEPT]:
             del self._loaded[name]
 
     def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> LoadedMap:
