@@ -18,7 +18,7 @@ from pathlib import Path
 
 import sensor_rows
 
-PARTS = ("table", "rays", "peers", "size")
+PARTS = ("table", "rays", "peers")
 
 
 def main() -> None:
@@ -44,10 +44,6 @@ def main() -> None:
         import sensor_peers  # noqa: PLC0415 - beside sensor_rays
 
         sensor_peers.drive(options.peer_python, options.frames)
-    if "size" in options.only:
-        import package_size  # noqa: PLC0415 - beside sensor_rays
-
-        package_size.tell()
 
 
 def table(options: argparse.Namespace) -> None:
