@@ -49,7 +49,7 @@ def _add_compare(compare: argparse.ArgumentParser) -> None:
         "--seeds", type=int, default=USUAL_SEEDS, metavar="N", help="services with each agent (default: %(default)s)"
     )
     compare.add_argument("--json", type=Path, metavar="FILE.json", help="write each service's figures to a file")
-    add_options(compare, RunOptions, only=("seed", *OF_AGENTS, *OF_RUNS, *SIMULATOR))
+    add_options(compare, RunOptions, only=("seed", *OF_AGENTS, *OF_RUNS, *SIMULATOR, "workers", "resume"))
     _add_conditions(compare)
     compare.set_defaults(command=later("basu_service.compare_command:run"))
 

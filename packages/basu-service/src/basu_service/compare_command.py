@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,13 +14,17 @@ from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.intervals import FEW, bootstrap, sign_test
+from basu.metrics.result import Result
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
-from basu.output.report.documents import plain
+from basu.output.report.documents import plain, read_result
+from basu.running.batch import counts
+from basu.running.runner import check_parallel
 from basu.settings.option import Layer
 from basu_service.document import SERVICE_FILE, read_service
 from basu_service.run_command import conditions_of
-from basu_service.running import drive_service, plan_service
+from basu_service.running import plan_service
+from basu_service.service_batch import ServiceBatch, Side, drive_all, given_of
 
 if TYPE_CHECKING:
     import argparse
@@ -67,24 +71,21 @@ def run(arguments: argparse.Namespace) -> int:
         UserError, AgentError: nothing can be started like this, or the services are no pairs.
         SimulatorError: the simulator failed.
     """
-    if arguments.seeds < FEWEST_PAIRS and not all(Path(each).is_dir() for each in arguments.compared):
+    sides = [
+        None if Path(word).is_dir() else Side(letter, word)
+        for letter, word in zip("ab", arguments.compared, strict=True)
+    ]
+    agents = [side for side in sides if side is not None]
+    if agents and arguments.seeds < FEWEST_PAIRS:
         raise UserError(
             f"--seeds is {arguments.seeds}; a comparison needs at least {FEWEST_PAIRS} services of each agent"
         )
     options = options_of(RunOptions, arguments, Layer({"shuttles": arguments.shuttles}))
-    folders = []
-    for place, word in enumerate(arguments.compared):
-        if Path(word).is_dir():
-            folders.append(Path(word))
-            continue
-        folder = options.output / f"{'ab'[place]}-{plain(word)}"
-        folders.append(folder)
-        conditions = conditions_of(arguments)
-        with terminated_as_interrupted():
-            for seed in range(options.seed, options.seed + arguments.seeds):
-                one = replace(options, agent=word, seed=seed, output=folder)
-                drive_service(one, plan_service(one, conditions), Scoring(), quiet=True)
-                print(f"{word}, seed {seed}: done")
+    parent = _driven(agents, arguments, options) if agents else options.output
+    folders = [
+        Path(word) if side is None else parent / side.folder
+        for side, word in zip(sides, arguments.compared, strict=True)
+    ]
     first, second = (services_in(folder) for folder in folders)
     print(comparison([str(each) for each in arguments.compared], first, second))
     if arguments.json is not None:
@@ -94,6 +95,26 @@ def run(arguments: argparse.Namespace) -> int:
         }
         write_bytes(arguments.json, (json.dumps(rows, indent=1) + "\n").encode())
     return 0
+
+
+def _driven(sides: list[Side], arguments: argparse.Namespace, options: RunOptions) -> Path:
+    """Drive the services of agents, and return the folder of the comparison.
+
+    Raises:
+        UserError, AgentError, SimulatorError: see ``run``.
+    """
+    if options.workers > 1:
+        check_parallel(options)
+    conditions = conditions_of(arguments)
+    given: dict[str, Any] = {"schema_version": 1}
+    for side in sides:
+        planned = plan_service(replace(options, agent=side.agent), conditions)
+        given |= {f"{name} of {side.folder}": value for name, value in given_of(options, side.agent, planned).items()}
+    folder = options.output / f"compare-{'-'.join(plain(side.agent) for side in sides)}"
+    batch = ServiceBatch(folder, sides, range(options.seed, options.seed + arguments.seeds))
+    with terminated_as_interrupted():
+        drive_all(batch, options, conditions, Scoring(), given, resume=options.resume)
+    return folder
 
 
 def services_in(folder: Path) -> dict[int, ServiceDocument]:
@@ -106,6 +127,8 @@ def services_in(folder: Path) -> dict[int, ServiceDocument]:
     for path in sorted(folder.glob(f"*/{SERVICE_FILE}")):
         if path.parent.is_symlink():
             continue
+        if not counts(Result.from_document(read_result(path.parent))):
+            continue  # the simulator failed, or the user interrupted it: it says nothing of the agent
         document = read_service(path.parent)
         if document["seed"] in found:
             raise UserError(f"{folder} has two services with the seed {document['seed']}; move one of them elsewhere")
