@@ -38,6 +38,7 @@ class Wanted(NamedTuple):
     hour: float = DEFAULT_HOUR
     scale: float = 1.0
     stops: tuple[RouteStop, ...] = ()
+    has_riders: bool = True  # persons that wait at the stops for the vehicle under test
 
 
 ANY = Wanted()
@@ -99,6 +100,8 @@ def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str], wanted:
         if wanted.stops:
             (draft / "stops.xml").write_bytes(_stops_xml(wanted.stops))
             options += ["--stops", str(draft / "stops.xml")]
+        if not wanted.has_riders:
+            options.append("--no-riders")
         _make(map_file, made, options, linden)
         made.rename(folder)
     except OSError as error:
