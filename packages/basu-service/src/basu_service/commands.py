@@ -44,10 +44,18 @@ def _add_compare(compare: argparse.ArgumentParser) -> None:
         "sign tests over the seeds."
     )
     compare.add_argument(
-        "compared", nargs=2, metavar="AGENT|DIR", help="an agent to drive, or a folder of services that were driven"
+        "compared", nargs="+", metavar="AGENT|DIR", help="an agent to drive, or a folder of services that were driven"
     )
     compare.add_argument(
         "--seeds", type=int, default=USUAL_SEEDS, metavar="N", help="services with each agent (default: %(default)s)"
+    )
+    compare.add_argument(
+        "--without",
+        action="store_true",
+        help="compare one agent's services with the same hours without the shuttle, both played by SUMO",
+    )
+    compare.add_argument(
+        "--assume", metavar="FILE.json", help="assumptions of --without (default: those packaged for Linden)"
     )
     compare.add_argument("--json", type=Path, metavar="FILE.json", help="write each service's figures to a file")
     add_options(compare, RunOptions, only=("seed", *OF_AGENTS, *OF_RUNS, *OF_SUMO, *SIMULATOR, "workers", "resume"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +29,7 @@ from basu_service.service_batch import ServiceBatch, Side, drive_all, given_of
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from basu_service.document import ServiceDocument
 
@@ -71,6 +72,13 @@ def run(arguments: argparse.Namespace) -> int:
         UserError, AgentError: nothing can be started like this, or the services are no pairs.
         SimulatorError: the simulator failed.
     """
+    if arguments.without:
+        return _without(arguments)
+    if len(arguments.compared) != 2 or arguments.assume is not None:
+        raise UserError(
+            "a comparison needs two agents or folders; with and without the shuttle is one of them with --without, and "
+            "--assume goes with that"
+        )
     sides = [
         None if Path(word).is_dir() else Side(letter, word)
         for letter, word in zip("ab", arguments.compared, strict=True)
@@ -81,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"--seeds is {arguments.seeds}; a comparison needs at least {FEWEST_PAIRS} services of each agent"
         )
     options = options_of(RunOptions, arguments, Layer({"shuttles": arguments.shuttles}))
-    parent = _driven(agents, arguments, options) if agents else options.output
+    parent = driven(agents, arguments, options) if agents else options.output
     folders = [
         Path(word) if side is None else parent / side.folder
         for side, word in zip(sides, arguments.compared, strict=True)
@@ -97,7 +105,20 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _driven(sides: list[Side], arguments: argparse.Namespace, options: RunOptions) -> Path:
+def _without(arguments: argparse.Namespace) -> int:
+    """Compare with and without the shuttle, which needs the distribution for SUMO.
+
+    Raises:
+        UserError: it is not installed, or see `basu_service.without_command.run`.
+    """
+    if importlib.util.find_spec("basu_sumo") is None:
+        raise UserError("--without plays the hours in SUMO, which is not installed; install it: pip install basu-sumo")
+    from basu_service.without_command import run as run_without  # noqa: PLC0415 - a plugin of its own
+
+    return run_without(arguments)
+
+
+def driven(sides: list[Side], arguments: argparse.Namespace, options: RunOptions) -> Path:
     """Drive the services of agents, and return the folder of the comparison.
 
     Raises:
@@ -113,7 +134,7 @@ def _driven(sides: list[Side], arguments: argparse.Namespace, options: RunOption
     folder = options.output / f"compare-{'-'.join(plain(side.agent) for side in sides)}"
     batch = ServiceBatch(folder, sides, range(options.seed, options.seed + arguments.seeds))
     with terminated_as_interrupted():
-        drive_all(batch, options, conditions, Scoring(), given, resume=options.resume)
+        drive_all(batch, options, conditions, Scoring(), given, resume=options.resume, say=print)
     return folder
 
 
@@ -123,19 +144,28 @@ def services_in(folder: Path) -> dict[int, ServiceDocument]:
     Raises:
         UserError: there is none, or two have one seed.
     """
-    found: dict[int, ServiceDocument] = {}
+    return {document["seed"]: document for _, document in counted_services(folder)}
+
+
+def counted_services(folder: Path) -> list[tuple[Path, ServiceDocument]]:
+    """Return each service below a folder with its own folder.
+
+    A service that the simulator or the user ended is left out: it says nothing of the agent.
+
+    Raises:
+        UserError: there is none, or two have one seed.
+    """
+    found: dict[int, tuple[Path, ServiceDocument]] = {}
     for path in sorted(folder.glob(f"*/{SERVICE_FILE}")):
-        if path.parent.is_symlink():
+        if path.parent.is_symlink() or not counts(Result.from_document(read_result(path.parent))):
             continue
-        if not counts(Result.from_document(read_result(path.parent))):
-            continue  # the simulator failed, or the user interrupted it: it says nothing of the agent
         document = read_service(path.parent)
         if document["seed"] in found:
             raise UserError(f"{folder} has two services with the seed {document['seed']}; move one of them elsewhere")
-        found[document["seed"]] = document
+        found[document["seed"]] = path.parent, document
     if not found:
         raise UserError(f"{folder} has no folder with {SERVICE_FILE}; name the --output of `basu service run`")
-    return found
+    return [found[seed] for seed in sorted(found)]
 
 
 def comparison(names: list[str], first: Mapping[int, ServiceDocument], second: Mapping[int, ServiceDocument]) -> str:
@@ -161,20 +191,24 @@ def comparison(names: list[str], first: Mapping[int, ServiceDocument], second: M
     ]
     for measure in MEASURES:
         pairs = [(measure.value(first[seed]), measure.value(second[seed])) for seed in sorted(first)]
-        values = np.array([[np.nan if each is None else each for each in pair] for pair in pairs], dtype=np.float64)
-        known = values[np.isfinite(values).all(axis=1)]
-        if len(known) < FEWEST_PAIRS:
-            lines.append(f"{_titled(measure):<26}  fewer than {FEWEST_PAIRS} pairs have it")
-            continue
-        difference, signs = bootstrap(known[:, 1] - known[:, 0]), sign_test(known[:, 0], known[:, 1])
-        lines.append(
-            f"{_titled(measure):<26}{known[:, 0].mean():>9.2f}{known[:, 1].mean():>9.2f}{difference.value:>9.2f}"
-            f"  {f'{difference.low:.2f} to {difference.high:.2f}':<20}"
-            f"A higher {signs.first_only}, B higher {signs.second_only}, p = {signs.p_value:.3f}"
-        )
+        lines.append(compared_row(_titled(measure), pairs))
     if len(first) < FEW:
         lines.append(f"only {len(first)} seeds: the intervals are too narrow")
     return "\n".join(lines)
+
+
+def compared_row(title: str, pairs: Sequence[tuple[float | None, float | None]]) -> str:
+    """Return a line: both means, the mean difference with its interval, and the sign test over the pairs."""
+    values = np.array([[np.nan if each is None else each for each in pair] for pair in pairs], dtype=np.float64)
+    known = values[np.isfinite(values).all(axis=1)]
+    if len(known) < FEWEST_PAIRS:
+        return f"{title:<26}  fewer than {FEWEST_PAIRS} pairs have it"
+    difference, signs = bootstrap(known[:, 1] - known[:, 0]), sign_test(known[:, 0], known[:, 1])
+    return (
+        f"{title:<26}{known[:, 0].mean():>9.2f}{known[:, 1].mean():>9.2f}{difference.value:>9.2f}"
+        f"  {f'{difference.low:.2f} to {difference.high:.2f}':<20}"
+        f"A higher {signs.first_only}, B higher {signs.second_only}, p = {signs.p_value:.3f}"
+    )
 
 
 def _conditions(document: ServiceDocument) -> dict[str, object]:

@@ -25,7 +25,7 @@ from basu.running.series import conditions as run_conditions
 from basu_service.running import ServiceJob, service_player
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from basu.options.run import RunOptions
@@ -91,8 +91,11 @@ def drive_all(
     given: Mapping[str, Any],
     *,
     resume: bool,
+    say: Callable[[str], object],
 ) -> None:
     """Drive the services of a comparison that are not there yet; ``given`` is all that they depend on.
+
+    ``say`` gets a line for each service that is over.
 
     Raises:
         UserError: the folder holds other services, nothing to go on with, or a service could not be driven.
@@ -111,7 +114,7 @@ def drive_all(
         jobs = batch.jobs(frozenset(done))
         answers = batch.play(play_jobs(service_player(options, conditions, scoring), jobs, options.workers))
         with drives_bar(len(jobs) + len(done), " services", initial=len(done)) as bar, contextlib.closing(answers):
-            failed = [each for each in _noted(batch, answers, bar) if each.folder is None or not _is_counted(each)]
+            failed = [each for each in _noted(batch, answers, bar, say) if each.folder is None or not _is_counted(each)]
     if failed:
         raise UserError(
             f"{len(failed)} services could not be driven, the first ({batch.described(failed[0].number)}): "
@@ -123,12 +126,12 @@ def _is_counted(done: DriveDone) -> bool:
     return counts(done.result)
 
 
-def _noted(batch: ServiceBatch, answers: Any, bar: Any) -> list[DriveDone]:  # noqa: ANN401 - a generator, and tqdm's
+def _noted(batch: ServiceBatch, answers: Any, bar: Any, say: Callable[[str], object]) -> list[DriveDone]:  # noqa: ANN401 - a generator, and tqdm's
     """Return all answers; each one is shown when it comes."""
     found = []
     for done in answers:
         bar.update()
-        print(f"{batch.described(done.number)}: {done.result.outcome.status.value}", flush=True)
+        say(f"{batch.described(done.number)}: {done.result.outcome.status.value}")
         found.append(done)
     return found
 
