@@ -15,17 +15,16 @@ from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.intervals import FEW, bootstrap, sign_test
-from basu.metrics.result import Result
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
-from basu.output.report.documents import plain, read_result
-from basu.running.batch import counts
+from basu.outcome import Status
+from basu.output.report.documents import plain
 from basu.running.runner import check_parallel
 from basu.settings.option import Layer
 from basu_service.document import SERVICE_FILE, read_service
 from basu_service.run_command import conditions_of
 from basu_service.running import plan_service
-from basu_service.service_batch import ServiceBatch, Side, drive_all, given_of
+from basu_service.service_batch import ServiceBatch, Side, drive_all, given_of, is_counted
 
 if TYPE_CHECKING:
     import argparse
@@ -157,9 +156,11 @@ def counted_services(folder: Path) -> list[tuple[Path, ServiceDocument]]:
     """
     found: dict[int, tuple[Path, ServiceDocument]] = {}
     for path in sorted(folder.glob(f"*/{SERVICE_FILE}")):
-        if path.parent.is_symlink() or not counts(Result.from_document(read_result(path.parent))):
+        if path.parent.is_symlink():
             continue
         document = read_service(path.parent)
+        if not all(is_counted(Status(each["status"])) for each in document["vehicles"]):
+            continue
         if document["seed"] in found:
             raise UserError(f"{folder} has two services with the seed {document['seed']}; move one of them elsewhere")
         found[document["seed"]] = path.parent, document

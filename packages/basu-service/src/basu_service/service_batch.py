@@ -19,7 +19,7 @@ from basu.jobs.playing import play_jobs
 from basu.metrics.scoring import Scoring
 from basu.output.progress import drives_bar
 from basu.output.report.documents import plain, write_json
-from basu.running.batch import Batch, changes, counts
+from basu.running.batch import COUNTED, Batch, changes
 from basu.running.folder_lock import locked
 from basu.running.series import conditions as run_conditions
 from basu_service.running import ServiceJob, service_player
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.options.run import RunOptions
+    from basu.outcome import Status
     from basu.running.drive import DriveDone
     from basu_service.running import PlannedService, ServiceConditions
 
@@ -107,14 +108,18 @@ def drive_all(
         batch.clear()
         done = set()
         for number, result in list(batch.finished()):
-            if counts(result):
+            if is_counted(result.outcome.status):
                 done.add(number)
             else:
                 batch.set_aside(number, result)
         jobs = batch.jobs(frozenset(done))
         answers = batch.play(play_jobs(service_player(options, conditions, scoring), jobs, options.workers))
         with drives_bar(len(jobs) + len(done), " services", initial=len(done)) as bar, contextlib.closing(answers):
-            failed = [each for each in _noted(batch, answers, bar, say) if each.folder is None or not _is_counted(each)]
+            failed = [
+                each
+                for each in _noted(batch, answers, bar, say)
+                if each.folder is None or not is_counted(each.result.outcome.status)
+            ]
     if failed:
         raise UserError(
             f"{len(failed)} services could not be driven, the first ({batch.described(failed[0].number)}): "
@@ -122,8 +127,9 @@ def drive_all(
         )
 
 
-def _is_counted(done: DriveDone) -> bool:
-    return counts(done.result)
+def is_counted(status: Status) -> bool:
+    """Return whether a service that ended so says something of its agents: not where another party ended it."""
+    return status.fault in COUNTED
 
 
 def _noted(batch: ServiceBatch, answers: Any, bar: Any, say: Callable[[str], object]) -> list[DriveDone]:  # noqa: ANN401 - a generator, and tqdm's

@@ -71,10 +71,13 @@ def impact_table(name: str, impacts: Mapping[int, Mapping[str, Any]]) -> str:
     """Return the comparison as text: A with the shuttle, B without it."""
     rows = [impacts[seed] for seed in sorted(impacts)]
     sums = {each: sum(row["persons"][each] for row in rows) for each in COUNTED}
+    counted = (
+        f"{sums['came']} persons came: {sums['warm_up']} set out in the warm-up, {sums['open']} were under way at the "
+        f"end; without the shuttle {sums['walked']} walk and {sums['drove']} drive"
+    )
     lines = [
         f"A with the shuttle ({name}), B without it: {len(rows)} seeds, SUMO plays both",
-        f"{sums['came']} persons came: {sums['warm_up']} set out in the warm-up, {sums['open']} were under way at the "
-        f"end; without the shuttle {sums['walked']} walk and {sums['drove']} drive",
+        counted,
         f"{'':<26}{'A':>9}{'B':>9}{'B - A':>9}  95 % interval       sign test",
     ]
     doors = (
