@@ -46,7 +46,7 @@ def open_fake() -> Iterator[Any]:
 
 
 @pytest.fixture
-def drive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+def drive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     """Drive the services of two agents with the fake player; the conditions and whether they go on."""
     DRIVEN.clear()
     FAILS.clear()
@@ -65,10 +65,10 @@ def drive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
         batch = ServiceBatch(tmp_path / "compare", [Side("a", "one"), Side("b", "two")], [1, 2])
         drive_all(batch, RunOptions(), ServiceConditions(), Scoring(), given, resume=resume, say=lambda _: None)
 
-    yield run
+    return run
 
 
-def test_after_a_kill_the_same_command_drives_the_rest_only(drive: Any, tmp_path: Path) -> None:  # noqa: ANN401
+def test_after_a_kill_the_same_command_drives_the_rest_only(drive: Any, tmp_path: Path) -> None:
     FAILS["one 2"] = Status.INTERRUPTED
     with pytest.raises(KilledError):
         drive({"minutes": 1.0}, resume=False)
@@ -81,7 +81,7 @@ def test_after_a_kill_the_same_command_drives_the_rest_only(drive: Any, tmp_path
 
 
 def test_a_service_that_the_simulator_ended_is_set_aside_and_driven_again(
-    drive: Any,  # noqa: ANN401
+    drive: Any,
     tmp_path: Path,
 ) -> None:
     FAILS["two 1"] = Status.SIMULATOR_FAILED
@@ -100,12 +100,12 @@ def test_a_service_that_the_simulator_ended_is_set_aside_and_driven_again(
         ({"minutes": 2.0}, True, r"was begun differently: minutes was 1\.0 and is 2\.0"),
     ],
 )
-def test_a_folder_holds_one_comparison(drive: Any, given: dict[str, Any], resume: bool, says: str) -> None:  # noqa: ANN401
+def test_a_folder_holds_one_comparison(drive: Any, given: dict[str, Any], *, resume: bool, says: str) -> None:
     drive({"minutes": 1.0}, resume=False)
     with pytest.raises(UserError, match=says):
         drive(given, resume=resume)
 
 
-def test_nothing_is_there_to_go_on_with(drive: Any) -> None:  # noqa: ANN401
+def test_nothing_is_there_to_go_on_with(drive: Any) -> None:
     with pytest.raises(UserError, match="there is no comparison"):
         drive({}, resume=True)

@@ -33,7 +33,7 @@ def test_our_totals_are_those_of_sumo_s_own_file(folder: Path, tmp_path: Path) -
     more.write_text(f"<routes>{trips}</routes>")
     play_alone(folder / "small.sumocfg", tmp_path, seed=3, step_s=STEP_S, until_s=60.0, latest_s=300.0, more=more)
     ours = read_trips(tmp_path).vehicles
-    theirs = ET.parse(tmp_path / "sumo" / "statistics.xml").getroot()  # noqa: S314 - SUMO's own file
+    theirs = ET.parse(tmp_path / "sumo" / "statistics.xml").getroot()
     totals = theirs.find("vehicleTripStatistics")
     assert totals is not None
     count = int(totals.attrib["count"])
@@ -56,7 +56,7 @@ def test_emissions_are_those_of_sumo_s_emission_output(folder: Path, tmp_path: P
     out = tmp_path / "emissions.xml"
     config.write_text(text.replace("</input>", f'</input><output><emission-output value="{out}"/></output>'))
     play_alone(config, tmp_path, seed=3, step_s=STEP_S, until_s=60.0, latest_s=120.0)
-    rows = ET.parse(out).getroot().iter("vehicle")  # noqa: S314 - SUMO's own file
+    rows = ET.parse(out).getroot().iter("vehicle")
     per_s_kg = [float(row.attrib["CO2"]) / 1e6 for row in rows]
     ours_kg = sum(trip.co2_kg for trip in read_trips(tmp_path).vehicles.values())
     assert ours_kg == pytest.approx(sum(per_s_kg) * STEP_S, rel=0.03)  # the first and the last step count in one only
