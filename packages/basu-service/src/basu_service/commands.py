@@ -12,7 +12,8 @@ from basu.plugins import Command
 from basu.settings.command_line import add_options
 
 OF_AGENTS = ("step_limit_s", "agent_memory_gb", "agent_writes", "track", "open", "debug")
-OF_RUNS = ("routes", "route_id", "vehicles", "walkers", "weather", "sumo", "output", "record")
+OF_RUNS = ("routes", "route_id", "vehicles", "walkers", "weather", "output", "record")
+OF_SUMO = ("sumo", "sumo_hour", "sumo_scale", "sumo_radius_m", "sumo_output")
 USUAL_SEEDS = 5
 
 
@@ -31,7 +32,7 @@ def _add_run(run: argparse.ArgumentParser) -> None:
         "Drive two or more shuttles round after round, with persons that come, wait, board, ride and alight. "
         "The result is service.json and service.html in the run's folder."
     )
-    add_options(run, RunOptions, only=("agent", "beside", "seed", *OF_AGENTS, *OF_RUNS, *SIMULATOR))
+    add_options(run, RunOptions, only=("agent", "beside", "seed", *OF_AGENTS, *OF_RUNS, *OF_SUMO, *SIMULATOR))
     _add_conditions(run)
     run.set_defaults(command=later("basu_service.run_command:run"))
 
@@ -43,13 +44,21 @@ def _add_compare(compare: argparse.ArgumentParser) -> None:
         "sign tests over the seeds."
     )
     compare.add_argument(
-        "compared", nargs=2, metavar="AGENT|DIR", help="an agent to drive, or a folder of services that were driven"
+        "compared", nargs="+", metavar="AGENT|DIR", help="an agent to drive, or a folder of services that were driven"
     )
     compare.add_argument(
         "--seeds", type=int, default=USUAL_SEEDS, metavar="N", help="services with each agent (default: %(default)s)"
     )
+    compare.add_argument(
+        "--without",
+        action="store_true",
+        help="compare one agent's services with the same hours without the shuttle, both played by SUMO",
+    )
+    compare.add_argument(
+        "--assume", metavar="FILE.json", help="assumptions of --without (default: those packaged for Linden)"
+    )
     compare.add_argument("--json", type=Path, metavar="FILE.json", help="write each service's figures to a file")
-    add_options(compare, RunOptions, only=("seed", *OF_AGENTS, *OF_RUNS, *SIMULATOR))
+    add_options(compare, RunOptions, only=("seed", *OF_AGENTS, *OF_RUNS, *OF_SUMO, *SIMULATOR, "workers", "resume"))
     _add_conditions(compare)
     compare.set_defaults(command=later("basu_service.compare_command:run"))
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from basu.output.report.event_rates import rate_text
+
 if TYPE_CHECKING:
     from basu_service.document import ServiceDocument, VehiclePart
 
@@ -21,6 +23,7 @@ def facts(document: ServiceDocument) -> list[tuple[str, str]]:
         ("rides", _rides(document)),
         ("falls", _falls(document)),
         *((f"vehicle {vehicle['number']}", _vehicle(vehicle)) for vehicle in document["vehicles"]),
+        *_events(document),
         *(("because" if number == 0 else "", why) for number, why in enumerate(document["reasons"])),
     ]
 
@@ -61,6 +64,14 @@ def _falls(document: ServiceDocument) -> str:
     model = f"model: {falls['low']:.0f} to {falls['high']:.0f}"
     count = f"{falls['expected']:.0f} of {falls['standing']} standing passengers lose balance ({model})"
     return f"{count}, strongest push {falls['strongest_mps2']:.2f} m/s²"
+
+
+def _events(document: ServiceDocument) -> list[tuple[str, str]]:
+    """Return the events of all vehicles for the distance that they have driven."""
+    vehicles = document["vehicles"]
+    driven_m = sum(each["driven_m"] for each in vehicles)
+    counted = ("contacts", "infractions", "disengagements")
+    return [(name, rate_text(sum(each[name] for each in vehicles), driven_m)) for name in counted]  # type: ignore[literal-required]
 
 
 def _vehicle(vehicle: VehiclePart) -> str:

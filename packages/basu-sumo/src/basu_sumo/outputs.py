@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 FOLDER = "sumo"  # in the run's folder
 TRIPS, SUMMARY, COLLISIONS, SAFETY = "tripinfo.xml", "summary.xml", "collisions.xml", "ssm.xml"
+TOTALS = "statistics.xml"
 SUMMARY_S = 1.0
 _HEADER = re.compile(rb"<!-- generated on .*?-->\s*", re.DOTALL)  # SUMO's note on when and how it ran
 
@@ -47,6 +48,19 @@ class Outputs:
             *("--collision-output", str(folder / COLLISIONS)),
             *("--device.ssm.explicit", self._watched, "--device.ssm.file", str(folder / SAFETY)),
         )
+
+    @property
+    def alone(self) -> tuple[str, ...]:
+        """SUMO's options for a play without a simulator: trip information, and totals by SUMO itself."""
+        if self._folder is None:
+            return ()
+        trips = ("--tripinfo-output", str(self._folder / TRIPS), "--tripinfo-output.write-unfinished", "true")
+        return (*trips, "--statistic-output", str(self._folder / TOTALS))
+
+    @staticmethod
+    def trips_of(run_folder: Path) -> Path:
+        """Return the file of trip information in a run's folder."""
+        return run_folder / FOLDER / TRIPS
 
     def finish(self) -> None:
         """Take the time of writing out of the files, once SUMO has ended: the same run gives the same bytes.

@@ -38,6 +38,7 @@ class Wanted(NamedTuple):
     hour: float = DEFAULT_HOUR
     scale: float = 1.0
     stops: tuple[RouteStop, ...] = ()
+    has_riders: bool = True  # persons that wait at the stops for the vehicle under test
 
 
 ANY = Wanted()
@@ -77,8 +78,10 @@ def config_in(folder: Path, *, is_random: bool) -> Path:
     return chosen[0]
 
 
-def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str], wanted: Wanted = ANY) -> Path:
+def made_of(opendrive: str | None, town: str, seed: int, linden: Sequence[str], wanted: Wanted = ANY) -> Path:
     """The folder with a network and a demand of a town's map, made by ``linden map sumo`` where it is not kept yet.
+
+    Without ``opendrive`` the map is the built-in one of the town.
 
     ``linden`` is the command that starts it.
 
@@ -93,12 +96,16 @@ def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str], wanted:
     folder.parent.mkdir(parents=True, exist_ok=True)
     draft = Path(tempfile.mkdtemp(prefix=f".{town}-", dir=folder.parent))
     try:
-        map_file, made = draft / f"{town}.xodr", draft / "made"
-        map_file.write_text(opendrive, encoding="utf-8")
+        map_file, made = Path(town), draft / "made"
+        if opendrive is not None:
+            map_file = draft / f"{town}.xodr"
+            map_file.write_text(opendrive, encoding="utf-8")
         options = ["--seed", str(seed), "--hour", f"{wanted.hour!r}", "--scale", f"{wanted.scale!r}"]
         if wanted.stops:
             (draft / "stops.xml").write_bytes(_stops_xml(wanted.stops))
             options += ["--stops", str(draft / "stops.xml")]
+        if not wanted.has_riders:
+            options.append("--no-riders")
         _make(map_file, made, options, linden)
         made.rename(folder)
     except OSError as error:

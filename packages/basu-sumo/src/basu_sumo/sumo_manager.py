@@ -61,7 +61,8 @@ class SumoManager(CoSimulation):
         self._step_s, self._stops = run.step_s, run.route.stops
         if self._sumo.is_random:
             bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed, bridge.viewers_m, bridge.held).fill
-        self._load, self._passengers = Load(link, run.step_s), Passengers(link, [stop.id for stop in self._stops])
+        boarded = [stop.id for stop in self._stops] if self._sumo.has_riders else []
+        self._load, self._passengers = Load(link, run.step_s), Passengers(link, boarded)
         bridge.step(run.world.get_snapshot())
 
     def _start(self, run: Run) -> Link:
@@ -98,11 +99,15 @@ class SumoManager(CoSimulation):
     def _wanted(self, run: Run) -> Wanted:
         """The demand of this run: that of the hour that it stands for, with the route's stops."""
         timetable = run.route.timetable
+        places: dict[tuple[float, float], RouteStop] = {}  # a route of several rounds has each stop once a round
+        for stop in run.route.stops:
+            places.setdefault((stop.x_m, stop.y_m), RouteStop(stop.id, stop.name, stop.x_m, stop.y_m))
         hour = DEFAULT_HOUR if timetable is None else timetable.run_departure_s / S_PER_HOUR
         return Wanted(
             hour=hour if self._sumo.hour is None else self._sumo.hour,
             scale=1.0 if self._sumo.scale is None else self._sumo.scale,
-            stops=tuple(RouteStop(stop.id, stop.name, stop.x_m, stop.y_m) for stop in run.route.stops),
+            stops=tuple(places.values()),
+            has_riders=self._sumo.has_riders,
         )
 
     def _check(self, bridge: Bridge, run: Run) -> None:

@@ -61,3 +61,4 @@ class Sumo(NamedTuple):
     hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
     scale: float | None = None  # of the traffic; None: as it is
     has_output: bool = False  # SUMO's own outputs in the run's folder
+    has_riders: bool = True  # passengers of the shuttle; False where an operator brings its own

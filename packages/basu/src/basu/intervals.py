@@ -10,7 +10,7 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import bdtrc, betaincinv
+from scipy.special import bdtrc, betaincinv, gammaincinv
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -75,6 +75,19 @@ def clopper_pearson(successes: float, trials: float, confidence: float = 0.95) -
     low = float(betaincinv(successes, trials - successes + 1.0, tail)) if successes > 0 else 0.0
     high = float(betaincinv(successes + 1.0, trials - successes, 1.0 - tail)) if successes < trials else 1.0
     return Interval(successes / trials, low, high, trials)
+
+
+def poisson(events: int, exposure: float, confidence: float = 0.95) -> Interval:
+    """Return the events for each unit of ``exposure`` with their exact interval: Garwood 1936.
+
+    Each end is a rate at which so many events have the probability ``(1 - confidence) / 2``: a quantile of the gamma
+    distribution. It holds for events that are independent of each other. Without exposure the value is NaN.
+    """
+    if not exposure > 0.0:
+        return Interval(math.nan, 0.0, math.inf, 0)
+    tail = (1.0 - confidence) / 2.0
+    low = float(gammaincinv(events, tail)) / exposure if events > 0 else 0.0
+    return Interval(events / exposure, low, float(gammaincinv(events + 1.0, 1.0 - tail)) / exposure)
 
 
 class Stratum(NamedTuple):

@@ -12,6 +12,7 @@ import pyarrow.compute as pc
 
 from basu.campaigns.evidence import OWN
 from basu.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
+from basu.output.report.event_rates import rate_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 HOUR_S = 3_600.0
+OF_KIND, DISENGAGEMENTS, DRIVEN = "infractions_", "disengagements_number", "reported_driven_m"  # columns
 
 
 class Rate(NamedTuple):
@@ -130,6 +132,31 @@ def pairs(table: pa.Table, agents: Sequence[str]) -> list[Pair]:
         _, kept = np.unique(np.stack([equal[one], equal[other]]), axis=1, return_index=True)  # equal pairs count once
         one, other = one[kept], other[kept]
         found.append(Pair(first, second, mcnemar(success[one], success[other]), sign_test(score[one], score[other])))
+    return found
+
+
+class Frequency(NamedTuple):
+    """A kind of event on the way that an agent has driven."""
+
+    agent: str
+    driven_km: float
+    event: str
+    text: str  # number and rates
+
+
+def frequencies(table: pa.Table, agents: Sequence[str]) -> list[Frequency]:
+    """Return each kind of infraction, and the disengagements, for the distance of the drives that were judged."""
+    columns = {name.removeprefix(OF_KIND): name for name in table.column_names if name.startswith(OF_KIND)}
+    if DISENGAGEMENTS in table.column_names:
+        columns["disengagements"] = DISENGAGEMENTS
+    found = []
+    for agent in agents:
+        own = table.filter(pc.and_(pc.equal(table["agent"], agent), table["judged"]))
+        driven_m = float(pc.sum(own[DRIVEN]).as_py() or 0.0)
+        for event, column in columns.items():
+            number = int(pc.sum(own[column]).as_py() or 0)
+            if number or event == "disengagements":
+                found.append(Frequency(agent, driven_m / 1000.0, event, rate_text(number, driven_m)))
     return found
 
 

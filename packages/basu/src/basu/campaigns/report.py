@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from basu.campaigns.campaign_folder import STOP_FILE, read_campaign_document
-from basu.campaigns.conclusions import breakdown, costs, distinct, means, pairs, rates, services
+from basu.campaigns.conclusions import breakdown, costs, distinct, frequencies, means, pairs, rates, services
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.plan import CASE
 from basu.campaigns.records import FAILURE, FAULT, SAMPLE, folder_of, kept_in
@@ -101,6 +101,7 @@ def _group(table: pa.Table, track: str, agents: list[str], confidence: float) ->
         "left_out": max(0, len(parts) - MOST_ROWS),
         "means": means(own, agents, confidence),
         "services": services(own, agents, confidence),
+        "frequencies": frequencies(own, agents),
     }
 
 

@@ -205,6 +205,9 @@ def _spec(
             )
             waiting = ()
     options = session.options
+    sumo = options.sumo_of(sumo_folder(agents.config), session.plan.loaded.file)
+    if sumo is not None and session.plan.shuttles[0].operator is not None:
+        sumo = sumo._replace(has_riders=False)
     return EpisodeSpec(
         town=job.description.town,
         route=description,
@@ -212,7 +215,7 @@ def _spec(
         weather=weather_called(agents.config.weather),
         weather_along=() if options.weather is not None else description.weather,
         traffic=options.traffic,
-        sumo=options.sumo_of(sumo_folder(agents.config), session.plan.loaded.file),
+        sumo=sumo,
         scenarios=waiting,
         scoring=session.scoring,
         timeout_s=options.timeout_s,

@@ -179,6 +179,7 @@ def _add_sumo(command: argparse.ArgumentParser) -> None:
         "--places", type=Path, metavar="FILE", help="GeoJSON points with a kind (school, transit) (default: Linden's)"
     )
     command.add_argument("--no-people", action="store_true", help="without people, crossings and walking areas")
+    command.add_argument("--no-riders", action="store_true", help="without passengers that wait for the shuttle")
 
 
 _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {

@@ -23,6 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
         demand,
         stops,
         people=not arguments.no_people,
+        has_riders=not arguments.no_riders,
         places=arguments.places,
     )
     compared = compare(written.converted)

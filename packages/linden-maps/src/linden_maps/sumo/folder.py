@@ -44,6 +44,7 @@ def write_folder(
     stops: tuple[RouteStop, ...] = (),
     *,
     people: bool = True,
+    has_riders: bool = True,
     places: Path | None = None,
 ) -> Written:
     """Write the scenario folder of an OpenDRIVE map; the same input gives the same bytes.
@@ -62,7 +63,7 @@ def write_folder(
         at_kerbs = parking_areas(net, _taken(converted, text, name, at_stops))
         trips = draw(net, demand, found, at_kerbs)
         walks = draw_walks(net, demand, found) if people else []
-        riders = draw_riders(net, demand, at_stops) if people else []
+        riders = draw_riders(net, demand, at_stops) if people and has_riders else []
         (stage / f"{name}.rou.xml").write_bytes(trips_file(trips))
         (stage / f"{name}.people.rou.xml").write_bytes(people_file(walks, riders, at_stops))
         (stage / "types.add.xml").write_bytes(types_file())

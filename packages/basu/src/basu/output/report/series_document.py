@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.leaderboard.scores import COMPARED
 from basu.output.report.document_parts import SeriesRow
 from basu.output.report.drive_row import part_of, row_of
+from basu.output.report.event_rates import rate_text
 from basu.output.report.tracks import ON_OWN_ROUTE
 
 if TYPE_CHECKING:
@@ -68,8 +69,8 @@ def series_table(name: str, document: Mapping[str, Any]) -> str:
         return lines[0]
     tracks = Counter(each["track"] for each in document["runs"] if each.get("track"))
     if len(tracks) > 1:
-        counts = "; ".join(f"{count} in the track {track}" for track, count in tracks.items())
-        return "\n".join([*lines, f"no means: scores of different tracks are not averaged ({counts})"])
+        shares = "; ".join(f"{count} in the track {track}" for track, count in tracks.items())
+        return "\n".join([*lines, f"no means: scores of different tracks are not averaged ({shares})"])
     lines += [f"{'track':<18}{track}" for track in tracks]
     lines.append(f"{'':<26}  mean   +/-    lowest highest")
     lines += [_line(NAMES[key], total["scores"][key]) for key in SCORES]
@@ -82,7 +83,10 @@ def series_table(name: str, document: Mapping[str, Any]) -> str:
     judged = {word: count for word, count in total.get("passed", {}).items() if count}
     lines += [f"{'result':<18}{', '.join(f'{count} {word}' for word, count in judged.items())}"] if judged else []
     lines.append(f"{'ended':<18}{', '.join(f'{count} {status}' for status, count in total['statuses'].items())}")
-    lines += [f"{kind:<26}{_often(found)}" for kind, found in total["infractions"].items()] or ["no infraction"]
+    driven_m = 1000.0 * total["driven_km"]
+    counts = {kind: found["number"] for kind, found in total["infractions"].items()}
+    lines += [f"{kind:<26}{rate_text(number, driven_m)}" for kind, number in counts.items()]
+    lines.append(f"{'all infractions':<26}{rate_text(sum(counts.values()), driven_m)}")
     pace = f", {total['simulated_s'] / total['wall_s']:.2f}x real time" if total["wall_s"] > 0.0 else ""
     lines.append(
         f"driven            {total['driven_km']:.3f} km, {total['simulated_s']:.1f} s simulated in "
@@ -104,9 +108,3 @@ def _spread(values: Sequence[float]) -> dict[str, float]:
 def _line(name: str, spread: Mapping[str, float]) -> str:
     figures = "".join(f"{spread[key]:8.3f}" for key in ("mean", "deviation", "lowest", "highest"))
     return f"{name:<22}{figures}"
-
-
-def _often(found: Mapping[str, Any]) -> str:
-    """Return how often a kind of infraction happened."""
-    rate = "" if found["per_km"] is None else f", {found['per_km']:.2f} a km"
-    return f"{found['number']}{rate}"
