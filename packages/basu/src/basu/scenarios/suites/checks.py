@@ -105,5 +105,14 @@ def _braking(result: Mapping[str, Any]) -> float | None:
     return found
 
 
-FIGURES: dict[str, Callable[[Mapping[str, Any]], float | None]] = {"hardest braking": _braking}
+def _top_speed(result: Mapping[str, Any]) -> float | None:
+    """Return the highest speed of the drive in m/s."""
+    found: float | None = (result["reported"] or {}).get("top_speed_mps")
+    return found
+
+
+FIGURES: dict[str, Callable[[Mapping[str, Any]], float | None]] = {
+    "hardest braking": _braking,
+    "highest speed": _top_speed,
+}
 """Figures of a drive that a limit can be held against."""

@@ -108,7 +108,7 @@ def read_suite(name: str, own: Mapping[str, Numbers] | None = None) -> Suite:
         document["source"],
         tuple(document["about"]),
         parameters,
-        tuple(_requirement(each, values) for each in document["requirement"]),
+        tuple(_requirement(each, values, document.get("sets", {})) for each in document["requirement"]),
     )
 
 
@@ -139,13 +139,15 @@ def _numbers(value: object, place: str) -> Numbers:
     return tuple(float(each) for each in several)
 
 
-def _requirement(given: Mapping[str, Any], parameters: Mapping[str, Numbers]) -> Requirement:
-    """Return a requirement with all its cases and with the parameters in its check."""
+def _requirement(
+    given: Mapping[str, Any], parameters: Mapping[str, Numbers], sets: Mapping[str, Sequence[Mapping[str, Any]]]
+) -> Requirement:
+    """Return a requirement with all its cases, of the sets that it names, and with the parameters in its check."""
     check = {
         key: parameters[value[1:]][0] if isinstance(value, str) and value.startswith("$") else value
         for key, value in given.get("check", {}).items()
     }
-    ids = itertools.chain.from_iterable(_ids(each, parameters) for each in given.get("cases", ()))
+    ids = itertools.chain.from_iterable(_ids(each, parameters) for name in given.get("sets", ()) for each in sets[name])
     return Requirement(
         id=given["id"],
         clause=given["clause"],
