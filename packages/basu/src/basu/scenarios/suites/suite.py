@@ -100,7 +100,9 @@ def read_suite(name: str, own: Mapping[str, Numbers] | None = None) -> Suite:
     )
     for key in own:
         if key not in document.get("parameters", {}):
-            raise ScenarioError(f"the suite {name} has no parameter '{key}'; {_meant(key, [p.name for p in parameters])}")
+            raise ScenarioError(
+                f"the suite {name} has no parameter '{key}'; {_meant(key, [p.name for p in parameters])}"
+            )
     values = {parameter.name: parameter.values for parameter in parameters}
     return Suite(
         name,

@@ -121,9 +121,7 @@ def _answered(
     return Answered(agent, word, evidence, _confidence(answers))
 
 
-def _evidence(
-    folder: Path, requirement: Mapping[str, Any], case: str, cell: Mapping[str, Any] | None
-) -> Evidence:
+def _evidence(folder: Path, requirement: Mapping[str, Any], case: str, cell: Mapping[str, Any] | None) -> Evidence:
     """Return the evidence of one drive."""
     if cell is None or not cell["folder"]:
         return Evidence(case, "", DASHED, Answer.NOT_SHOWN, "it was not played to its end")
@@ -159,7 +157,9 @@ def suite_text(suite: AnsweredSuite) -> list[str]:
     for requirement, agents in suite.requirements:
         lines.append(f"  {requirement['id']}: {requirement['clause']}")
         if not agents:
-            lines += textwrap.wrap(f"not tested: {requirement['untested']}", WIDTH, initial_indent="    ", subsequent_indent="      ")
+            lines += textwrap.wrap(
+                f"not tested: {requirement['untested']}", WIDTH, initial_indent="    ", subsequent_indent="      "
+            )
         lines += [f"    {one.agent:<14}{one.word:<11}{one.summary}; {one.confidence[0]}" for one in agents]
     for agent in suite.agents:
         met, tested = suite.met(agent)
