@@ -9,7 +9,7 @@ from basu.scenarios.suites.checks import Answer, answer_of
 NO_CONTACT = {"kind": "no contact"}
 
 
-def result(verdict: str = "SUCCESS", *, touched: bool = False, completed: bool = True, **more: Any) -> dict[str, Any]:  # noqa: ANN401
+def result(verdict: str = "SUCCESS", *, touched: bool = False, completed: bool = True, **more: Any) -> dict[str, Any]:
     """A result as a case leaves it, with what the checks read."""
     said = {"criterion": "no collision", "passed": not touched, "sentence": "it touched something" if touched else "ok"}
     case = {

@@ -78,5 +78,5 @@ def test_a_parameter_that_a_suite_has_not_is_refused_with_the_nearest() -> None:
 def test_a_value_out_of_a_cases_range_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "own.toml"
     file.write_text("pedestrian_speeds = 9.0\n")
-    with pytest.raises(ScenarioError, match="from 0.8 to 2.2"):
+    with pytest.raises(ScenarioError, match=r"from 0\.8 to 2\.2"):
         open_library((), file).choose(["iso-22737"])

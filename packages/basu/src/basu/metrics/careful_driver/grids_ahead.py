@@ -1,8 +1,8 @@
 """The cut-outs and decelerations by which the Joint Research Centre compares three models: 5,850 and 1,121 cases.
 
-The own vehicle follows at the gap that its model keeps. In a deceleration the vehicle ahead brakes evenly to a stand. In
-a cut-out it leaves the lane before a standing vehicle, or hits that and stands where it did. Sizes, rate and number of
-steps are those of `standard_grid`; the standing vehicle is 5 m long there. Reg157 is not among the models compared.
+The own vehicle follows at the gap that its model keeps. In a deceleration the vehicle ahead brakes evenly to a stand.
+In a cut-out it leaves the lane before a standing vehicle, or hits that and stands where it did. Sizes, rate and number
+of steps are those of `standard_grid`; the standing vehicle is 5 m long. Reg157 is not among the models compared.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`SlowerUntilTtc`: a vehicle in the next lane that is slower than the ego, until a cut-in meets a time to collision."""
+"""`SlowerUntilTtc`: a vehicle in the next lane is slower than the ego, until a cut-in meets a time to collision."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def crossing_to(moved_m: float, across_m: float, over_m: float) -> Crossing:
 class SlowerUntilTtc(PathFollower):
     """Let a vehicle wait beside the ego's lane, set off before the ego, and keep ``difference_mps`` less than it had.
 
-    Done when a lane change that begins now has brought its side across a line, ``edge_m`` beside the middle of its lane,
-    at a time to collision of ``ttc_s``. So its speed and the moment follow from the ego's own driving. ``over_m`` and
-    ``across_m`` are those of the lane change to come.
+    Done when a lane change that begins now has brought its side across a line, ``edge_m`` beside the middle of its
+    lane, at a time to collision of ``ttc_s``. So its speed and the moment follow from the ego's own driving. ``over_m``
+    and ``across_m`` are those of the lane change to come.
     """
 
     def __init__(

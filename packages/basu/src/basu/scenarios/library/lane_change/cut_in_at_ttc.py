@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from basu.metrics.careful_driver.eu_cut_in import INTRUSION_M, KMH, intrusion, is_inside
 from basu.metrics.careful_driver.encounters import own_middle_m, sideways_begins, way_between
+from basu.metrics.careful_driver.eu_cut_in import INTRUSION_M, KMH, intrusion, is_inside
 from basu.scenarios.actions import ChangeLane, DriveAlong, InTurn, SlowerUntilTtc
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
 from basu.scenarios.exercise import Finding
 from basu.scenarios.library.road_users import BLUEPRINTS
 from basu.scenarios.nhtsa import Group
-from basu.scenarios.policy import NoNearMiss
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import Path
+from basu.scenarios.policy import NoNearMiss
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import EgoNear
@@ -39,9 +39,9 @@ class CutInAtTtc(Scenario):
     """A slower vehicle in the next lane cuts in on the ego, at a chosen difference of speeds and time to collision.
 
     NHTSA pre-crash scenario 18, vehicles changing lanes, same direction. The neighbour takes its speed from the ego's.
-    So any ego that keeps a steady speed above the difference meets the same situation. The time to collision counts at the
-    intrusion, 0.3 m within the ego's lane. The conflict has come about if the record has both figures, within 0.15 s
-    and 1.5 km/h. An ego that brakes after the neighbour began to move sideways does not change them.
+    So any ego that keeps a steady speed above the difference meets the same situation. The time to collision counts at
+    the intrusion, 0.3 m within the ego's lane. The conflict has come about if the record has both figures, within
+    0.15 s and 1.5 km/h. An ego that brakes after the neighbour began to move sideways does not change them.
     """
 
     group = Group.LANE_CHANGE
