@@ -11,8 +11,6 @@ from basu.scenarios.verdict import Verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-Document = "Mapping[str, Any]"
-
 
 class Answer(enum.Enum):
     """What one case says about a requirement."""

@@ -135,7 +135,7 @@ def _numbers(value: object, place: str) -> Numbers:
     Raises:
         ScenarioError: it is neither.
     """
-    several = value if isinstance(value, list) else [value]
+    several: list[Any] = value if isinstance(value, list) else [value]
     if not several or any(isinstance(each, bool) or not isinstance(each, int | float) for each in several):
         raise ScenarioError(f"{place} is {value!r}; write a number, or several in brackets such as [0.8, 1.4]")
     return tuple(float(each) for each in several)

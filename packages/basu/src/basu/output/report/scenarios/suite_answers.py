@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 PREFIX = "suite-"
 WIDTH = 110  # of a line of text
+NOT_PLAYED = "not played"
 MET, BROKEN, OPEN = "met", "not met", "not shown"
 
 
@@ -124,16 +125,13 @@ def _answered(
 def _evidence(folder: Path, requirement: Mapping[str, Any], case: str, cell: Mapping[str, Any] | None) -> Evidence:
     """Return the evidence of one drive."""
     if cell is None or not cell["folder"]:
-        return Evidence(case, "", DASHED, Answer.NOT_SHOWN, "it was not played to its end")
+        return Evidence(case, "", NOT_PLAYED, Answer.NOT_SHOWN, "it was not played to its end")
     try:
         result = read_json(folder / cell["folder"] / RESULT_FILE, "the document", "play the case again")
         found = answer_of(requirement["check"], result)
     except UserError as error:
         found = CaseAnswer(Answer.NOT_SHOWN, str(error))
     return Evidence(case, cell["folder"], cell["verdict"], *found)
-
-
-DASHED = "not played"
 
 
 def _confidence(answers: Sequence[Answer]) -> tuple[str, ...]:
