@@ -33,7 +33,7 @@ class SuiteParameter(NamedTuple):
     values: Numbers
     unit: str
     about: str
-    origin: str  # whose figure it is: of BASU, or of the user's file
+    origin: str  # of the figure: BASU, or the user's file
 
 
 class Requirement(NamedTuple):
@@ -42,7 +42,7 @@ class Requirement(NamedTuple):
     id: str
     clause: str  # where the standard has it
     demand: str
-    figures: str  # whose figures they are
+    figures: str  # their origin
     test: str
     check: Mapping[str, Any]  # its kind, and what that needs; empty where it is not tested
     cases: tuple[str, ...]  # ids; empty where it is not tested
