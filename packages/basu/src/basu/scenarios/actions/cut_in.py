@@ -44,8 +44,8 @@ def crossing_to(moved_m: float, across_m: float, over_m: float) -> Crossing:
 class SlowerUntilTtc(PathFollower):
     """Let a vehicle wait beside the ego's lane, set off before the ego, and keep ``difference_mps`` less than it had.
 
-    Done when a lane change that begins now has brought its side across a line, ``edge_m`` beside the middle of its
-    lane, at a time to collision of ``ttc_s``. So its speed and the moment follow from the ego's own driving. ``over_m``
+    Done at the moment for a lane change: its side will cross a line at a time to collision of ``ttc_s``. The line is
+    ``edge_m`` beside the middle of its lane. So its speed and the moment follow from the ego's own driving. ``over_m``
     and ``across_m`` are those of the lane change to come.
     """
 
