@@ -17,6 +17,8 @@ from basu.metrics.careful_driver.simulation import Motion, Sizes, drive
 from basu.metrics.careful_driver.standard_grid import LENGTH_M, RATE_HZ, STEP_S, STEPS, WIDTH_M
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from basu.metrics.careful_driver.model import CarefulDriver, Flags, Numbers
 
 DECELERATIONS_G = np.arange(0.05, 1.0, 0.05)
@@ -84,7 +86,7 @@ def _leaving(own_mps: Numbers, leader_m: Numbers, standing_m: Numbers, lateral_m
     return _Leaving(along_m, np.repeat(across_m[:, None], len(own_mps), axis=1), hit_step)
 
 
-def _of_cases(leaving: _Leaving, cases: Numbers) -> _Leaving:
+def _of_cases(leaving: _Leaving, cases: NDArray[np.intp]) -> _Leaving:
     """Return some of the cases."""
     return _Leaving(leaving.along_m[:, cases], leaving.across_m[:, cases], leaving.hit_step[cases])
 

@@ -118,8 +118,10 @@ def seen_intrusion(played: Played) -> Intrusion | None:
         return None
     rows = history.others[(history.others["id"] == key) & (history.others["tick"] >= first)]
     way = way_between(history, key, first, int(rows["tick"][-1])) if len(rows) else None
-    inside = [] if way is None else is_inside(history, way).nonzero()[0]
-    if way is None or len(inside) == 0:
+    if way is None:
+        return None
+    inside = is_inside(history, way).nonzero()[0]
+    if len(inside) == 0:
         return None
     begin = sideways_begins(way, int(inside[0]), history.facts.step_s)
     tick = int(way.tick[begin])
