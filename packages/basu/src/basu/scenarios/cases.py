@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -18,12 +18,14 @@ from basu.scenarios.class_file import own_scenarios, users_scenarios
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.playable import Playable
+from basu.scenarios.suites.suite import read_own_values, read_suite, suite_names
 from basu.scenarios.variation import variant, variants
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from basu.scenarios.scenario import Scenario
+    from basu.scenarios.suites.suite import Numbers, Requirement, Suite
     from basu.scenarios.variation import Variation
     from basu.scenarios.xml_elements import Case
 
@@ -53,6 +55,7 @@ class Library:
     scenarios: tuple[type[Scenario], ...]  # by name, then the user's
     cases: tuple[Case, ...]  # of all files
     by_stem: Mapping[Path, tuple[Case, ...]]  # of a user's files, by their paths without .xml or .py
+    suite_values: Mapping[str, Numbers] = field(default_factory=dict)  # the user's parameters of suites
 
     def type_of(self, case: Case) -> type[Scenario]:
         """The class of a case, by its name or an alias.
@@ -102,10 +105,22 @@ class Library:
         """The cases that are meant by `all`, a file, a case's id, a type or a group."""
         if wanted == ALL:
             return tuple(self.playable(case) for case in self.cases)
+        if wanted in suite_names():
+            return tuple(playable for _, playables in self.suite(wanted)[1] for playable in playables)
         path, class_name = file_in(wanted)
         if path is not None:
             return self._of_file(path, class_name)
         return self._of_thesis(wanted) or self.of_id(wanted) or self._of_kind(wanted)
+
+    def suite(self, name: str) -> tuple[Suite, list[tuple[Requirement, tuple[Playable, ...]]]]:
+        """Return a suite, and the cases of each of its requirements.
+
+        Raises:
+            ScenarioError: the suite has no parameter of a user's name, or a value of it is out of a case's range.
+        """
+        suite = read_suite(name, self.suite_values)
+        cases = [(each, tuple(one for id_ in each.cases for one in self.of_id(id_))) for each in suite.requirements]
+        return suite, cases
 
     def _of_thesis(self, wanted: str) -> tuple[Playable, ...]:
         """The cases of `thesis`, of `thesis:III`, or of a name of the thesis; none where it is no such word.
@@ -166,13 +181,13 @@ class Library:
 
     def _kinds(self) -> list[str]:
         """Return the words that mean several cases: types, groups and `all`."""
-        return [*(snake(s.__name__) for s in self.scenarios), *(group.value for group in Group), ALL]
+        return [*(snake(s.__name__) for s in self.scenarios), *(group.value for group in Group), *suite_names(), ALL]
 
     def close_to(self, wanted: str, kinds: Sequence[str]) -> str:
         """Return a hint for a word that means nothing: the nearest case or kind, and where to look."""
         names = [*(case.name for case in self.cases), *kinds]
         close = difflib.get_close_matches(snake(wanted.partition(":")[0]), names, 1)
-        words = "a case, a type, a group, FILE.xml or all" if kinds else "a case's id"
+        words = "a case, a type, a group, a suite, FILE.xml or all" if kinds else "a case's id"
         hint = f"did you mean '{close[0]}'?" if close else f"it may be {words}, and one of yours with --scenarios FILE;"
         return f"{hint} `basu scenario list` shows what there is"
 
@@ -198,8 +213,10 @@ class ScenarioReader(Protocol):
         """
 
 
-def open_library(files: Iterable[str | Path] = ()) -> Library:
+def open_library(files: Iterable[str | Path] = (), parameters: Path | None = None) -> Library:
     """BASU's own, and the classes and cases of a user's files; each file brings the other of its stem.
+
+    ``parameters`` is a user's file with values of the parameters of suites.
 
     Raises:
         ScenarioError: a file cannot be used, or a class has the name of another.
@@ -216,7 +233,8 @@ def open_library(files: Iterable[str | Path] = ()) -> Library:
         scenarios += found.scenarios
         by_stem[stem] = found.cases
         cases += by_stem[stem]
-    return Library(scenarios=tuple(scenarios), cases=tuple(cases), by_stem=by_stem)
+    values = {} if parameters is None else read_own_values(parameters)
+    return Library(scenarios=tuple(scenarios), cases=tuple(cases), by_stem=by_stem, suite_values=values)
 
 
 def _read_file(path: Path) -> ScenarioFile:
@@ -235,14 +253,16 @@ def _read_file(path: Path) -> ScenarioFile:
     )
 
 
-def cases_of(wanted: str | Sequence[str], files: Sequence[str | Path] = ()) -> tuple[Playable, ...]:
-    """The cases that are meant by each of ``wanted``, every one once; ``files`` are the user's.
+def cases_of(
+    wanted: str | Sequence[str], files: Sequence[str | Path] = (), parameters: Path | None = None
+) -> tuple[Playable, ...]:
+    """The cases that are meant by each of ``wanted``, every one once; ``files`` and ``parameters`` are the user's.
 
     Raises:
         ScenarioError: a file cannot be used, nothing is meant by a word, or two cases have one id.
     """
     words = (wanted,) if isinstance(wanted, str) else tuple(wanted)
-    return open_library([*files, *files_among(words)]).choose(words)
+    return open_library([*files, *files_among(words)], parameters).choose(words)
 
 
 def by_id(identity: str, files: Sequence[str | Path] = ()) -> Playable:

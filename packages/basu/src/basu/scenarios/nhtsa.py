@@ -143,6 +143,7 @@ STANDS_FOR: dict[str, tuple[int, ...]] = {
     "CyclistSwerves": (14,),
     "Dooring": (14,),
     "DynamicObject": (14,),
+    "CutInAtTtc": (18,),
     "CutInBeforeStop": (18,),
     "DriftingNeighbour": (19,),
     "ParkedCarPullsOut": (17,),

@@ -101,7 +101,11 @@ def _encounter(history: History, tick: int, key: int, is_contact: bool) -> Encou
 
 def way_of(history: History, key: int, last: int) -> Way | None:
     """Return the way of an actor up to the tick ``last``, over `LOOK_BACK_S`; None where it was not there before."""
-    first = max(0, last - round(LOOK_BACK_S / history.facts.step_s))
+    return way_between(history, key, max(0, last - round(LOOK_BACK_S / history.facts.step_s)), last)
+
+
+def way_between(history: History, key: int, first: int, last: int) -> Way | None:
+    """Return the way of an actor from one tick to another, or its last part without a gap; None where it left."""
     rows = history.others[history.others["id"] == key]
     rows = rows[(rows["tick"] >= first) & (rows["tick"] <= last)]
     if len(rows) == 0 or int(rows["tick"][-1]) < last - 1:
@@ -176,7 +180,7 @@ def _with_situation(history: History, bare: Encounter, way: Way, key: int) -> En
     entry = min(int(outside[-1]) + 1, len(way.tick) - 1) if len(outside) else None
     braked = _braking_begins(way, step_s)
     if entry is not None and not (braked is not None and (braked - entry) * step_s > SETTLED_S):
-        begin = _sideways_begins(way, entry, step_s)
+        begin = sideways_begins(way, entry, step_s)
         sentence = f"cut-in: the other came into the lane at {_time_s(history, way, entry):.1f} s"
         return _checked(history, bare, Situation.CUT_IN, sentence, way, begin, None)
     uncovered = _uncovered(history, way, key)
@@ -218,7 +222,7 @@ def _index_of(way: Way, leader: Way, index: int) -> int:
     return int(np.clip(leader.tick[index] - way.tick[0], 0, len(way.tick) - 1))
 
 
-def _sideways_begins(way: Way, entry: int, step_s: float) -> int:
+def sideways_begins(way: Way, entry: int, step_s: float) -> int:
     """Return the moment from which the other moved towards the lane until its entry."""
     towards_mps = -np.gradient(np.abs(way.across_m), step_s)
     calm = np.flatnonzero(towards_mps[:entry] <= SIDEWAYS_MPS)

@@ -7,6 +7,7 @@ place of the intrusion was not read: here it is that of UN Regulation 157, 0.3 m
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,7 +15,8 @@ import numpy as np
 from basu.metrics.careful_driver.model import Situation
 
 if TYPE_CHECKING:
-    from basu.metrics.careful_driver.encounters import Encounter
+    from basu.metrics.careful_driver.encounters import Encounter, Way
+    from basu.metrics.careful_driver.model import Flags
     from basu.records.history import History
 
 DIFFERENCES_KMH = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
@@ -37,6 +39,15 @@ class Demand(NamedTuple):
     sentence: str
 
 
+class Intrusion(NamedTuple):
+    """The moment of an intrusion into the planned lane."""
+
+    tick: int
+    ttc_s: float  # inf where the other is not slower
+    difference_kmh: float
+    gap_m: float  # between the bumpers, negative where the other is beside
+
+
 def demand(history: History, encounter: Encounter, from_m: float, speed_mps: float) -> Demand | None:
     """What the table demands of a vehicle that is at ``from_m`` when the cut-in begins, and keeps ``speed_mps``.
 
@@ -45,20 +56,35 @@ def demand(history: History, encounter: Encounter, from_m: float, speed_mps: flo
     way = encounter.way
     if encounter.situation is not Situation.CUT_IN or way is None:
         return None
-    route, vehicle = history.facts.route, history.facts.vehicle
-    half_lane_m = np.interp(way.along_m, route.s_m, route.lane_width_m) / 2.0
-    half_m = way.width_m - vehicle.width_m / 2.0
-    is_inside = np.abs(way.across_m) - half_m <= half_lane_m - INTRUSION_M
-    inside = np.flatnonzero((way.tick >= encounter.begin_tick) & is_inside)
+    seen = intrusion(history, way, encounter.begin_tick, from_m, speed_mps)
+    if seen is None or not DIFFERENCES_KMH[0] <= seen.difference_kmh <= DIFFERENCES_KMH[-1]:
+        return None
+    return _found(max(0.0, seen.ttc_s), seen.difference_kmh)
+
+
+def intrusion(history: History, way: Way, begin_tick: int, from_m: float, speed_mps: float) -> Intrusion | None:
+    """Return the moment in which another vehicle is `INTRUSION_M` within the planned lane; None where it never is.
+
+    The own vehicle is at ``from_m`` along the route at ``begin_tick``, and keeps ``speed_mps`` from then on.
+    """
+    inside = np.flatnonzero((way.tick >= begin_tick) & is_inside(history, way))
     if len(inside) == 0:
         return None
     at = int(inside[0])
-    later_s = float(way.tick[at] - encounter.begin_tick) * history.facts.step_s
+    later_s = float(way.tick[at] - begin_tick) * history.facts.step_s
     closing_mps = speed_mps - float(way.along_mps[at])
     gap_m = float(way.along_m[at]) - (from_m + speed_mps * later_s) - way.length_m
-    if not DIFFERENCES_KMH[0] <= closing_mps * KMH <= DIFFERENCES_KMH[-1]:
-        return None
-    return _found(max(0.0, gap_m) / closing_mps, closing_mps * KMH)
+    ttc_s = gap_m / closing_mps if closing_mps > 0.0 else math.inf
+    return Intrusion(int(way.tick[at]), ttc_s, closing_mps * KMH, gap_m)
+
+
+def is_inside(history: History, way: Way) -> Flags:
+    """Return at which moments of a way the other is `INTRUSION_M` or more within the planned lane."""
+    route, vehicle = history.facts.route, history.facts.vehicle
+    half_lane_m = np.interp(way.along_m, route.s_m, route.lane_width_m) / 2.0
+    half_m = way.width_m - vehicle.width_m / 2.0
+    inside: Flags = np.abs(way.across_m) - half_m <= half_lane_m - INTRUSION_M
+    return inside
 
 
 def _found(ttc_s: float, difference_kmh: float) -> Demand:

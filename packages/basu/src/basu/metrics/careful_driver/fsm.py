@@ -78,8 +78,8 @@ class Fsm:
 
     def following_m(self, speed_mps: Numbers) -> Numbers:
         """Return the gap at which the proactive measure begins to rise."""
-        stops_m = speed_mps**2 / (2.0 * self.comfortable_mps2) - speed_mps**2 / (2.0 * self.leader_mps2)
-        gap_m: Numbers = speed_mps * self.delay_s + stops_m + self.margin_m + self.standing_gap_m
+        stops_m, leader_stops_m = speed_mps**2 / (2.0 * self.comfortable_mps2), speed_mps**2 / (2.0 * self.leader_mps2)
+        gap_m: Numbers = speed_mps * self.delay_s + stops_m - leader_stops_m + self.margin_m + self.standing_gap_m
         return gap_m
 
 

@@ -97,8 +97,9 @@ def drive(
 def _view(state: _State, other: Motion, sizes: Sizes, step: int) -> View:
     """Return what the model sees in a step."""
     ahead_m, across_m = other.along_m[step] - state.at_m, other.across_m[step]
+    half_m = sizes.length_m / 2.0
     return View(
-        gap_m=np.abs(ahead_m) - sizes.length_m,
+        gap_m=np.abs(ahead_m) - half_m - half_m,  # in two steps, for the rounding of ties is that of the public program
         length_m=np.broadcast_to(np.asarray(sizes.length_m, dtype=np.float64), ahead_m.shape),
         clear_m=np.abs(across_m) - sizes.width_m,
         own_mps=state.speed_mps,

@@ -22,6 +22,8 @@ from basu.output.report.scenarios.junit import junit_xml
 from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
 from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matrix_page
+from basu.output.report.scenarios.page.suite_page import suite_page_file, write_suite_page
+from basu.output.report.scenarios.suite_answers import answered, read_suites, suite_file, suite_text
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.batch import Batch, counts
@@ -29,6 +31,7 @@ from basu.running.drive import DriveDone
 from basu.running.folder_lock import locked
 from basu.running.preparation import agent_of
 from basu.running.scenario_runs.case_documents import matrix_of, run_config
+from basu.running.scenario_runs.chosen_cases import suites_of
 from basu.running.scenario_runs.player import case_player
 from basu.running.scenario_runs.suite import Suite
 
@@ -81,6 +84,9 @@ def report_again(folder: Path, matrix: dict[str, Any], junit: Path | None) -> No
 
 def _show(folder: Path, matrix: dict[str, Any]) -> None:
     print(matrix_text(matrix, colour=sys.stdout.isatty()))
+    for document in read_suites(folder):
+        print("\n" + "\n".join(suite_text(answered(folder, document, matrix))))
+        print(f"suite   {folder / suite_page_file(document['name'])}")
     print(f"\nreport  {folder / PAGE_FILE}")
 
 
@@ -114,6 +120,8 @@ def play_matrix(
     with locked(folder):
         if resumed is None:
             write_json(folder / CONFIG_FILE, run_config(options, scoring, suite.agents))
+            for document in suites_of(options, {playable.case.name for playable, _ in suite.rows}):
+                write_json(folder / suite_file(document["name"]), document)
         batch, matrix = Batch(folder, suite.names), None
         found = _taken_in(batch)
         # Classes that are given stay in this process: no other one has them.
@@ -178,6 +186,8 @@ def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> 
         name = f"success-{plain(study.scenario)}-{plain(study.agent)}.svg"
         write_bytes(folder / name, sweep_map(matrix, study.agent, study.scenario).encode())
     write_matrix_page(folder, matrix)
+    for document in read_suites(folder):
+        write_suite_page(folder, document, matrix)
 
 
 def worst(documents: Iterable[Mapping[str, Any]]) -> int:

@@ -27,7 +27,7 @@ class CaseOptions(Settings):
 
     what: tuple[str, ...] = option(
         ("all",),
-        "all, a group, a scenario, a case's id, or a FILE.xml with cases",
+        "all, a suite, a group, a scenario, a case's id, or a FILE.xml with cases",
         positional=True,
         metavar="WHAT",
         is_file=True,
@@ -51,6 +51,9 @@ class CaseOptions(Settings):
     )
     fixed: tuple[tuple[str, str], ...] = option(
         (), "set a parameter; may be given several times", flag="--set", metavar="NAME=VALUE", style="pairs"
+    )
+    parameters: Path | None = option(
+        None, "a TOML file with your own values of the parameters of a suite", metavar="FILE"
     )
     ego: str | None = option(
         None,

@@ -1,5 +1,6 @@
 """Actions of scenarios: motion of vehicles and walkers, disturbed ego controls, weather, friction, lights, doors."""
 
+from basu.scenarios.actions.cut_in import SlowerUntilTtc
 from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
 from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering
 from basu.scenarios.actions.maneuvers import Accelerate, Brake, ChangeLane, Drift, Hold
@@ -48,6 +49,7 @@ __all__ = [
     "SetFriction",
     "SetLight",
     "SetWeather",
+    "SlowerUntilTtc",
     "Together",
     "Wait",
     "WalkAlong",
