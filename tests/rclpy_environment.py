@@ -51,7 +51,8 @@ def made_rclpy() -> Path:
 
 def _state() -> str:
     """Return a hash of the files from which the environment is made."""
-    files = [REQUIREMENTS, SIDE / "messages.py", Path(__file__), *sorted(DEFINITIONS.rglob("*.msg"))]
+    definitions = sorted([*DEFINITIONS.rglob("*.msg"), *DEFINITIONS.rglob("*.srv")])
+    files = [REQUIREMENTS, SIDE / "messages.py", Path(__file__), *definitions]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 

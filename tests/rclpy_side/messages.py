@@ -1,6 +1,7 @@
 """Python messages of definitions that no wheel has, by the generators in the wheels: `messages.py DEFINITIONS OUT`.
 
-Runs in the environment of rclpy. DEFINITIONS has a folder of `.msg` files for each package. Needs a C++ compiler.
+Runs in the environment of rclpy. DEFINITIONS has a folder of `.msg` and `.srv` files for each package. Needs a C++
+compiler.
 """
 
 import contextlib
@@ -28,15 +29,21 @@ RUNTIME = (
     "rcutils", "fastcdr",
 )  # fmt: skip
 OF_ROS_1 = ("autoware_msgs",)  # of Autoware.AI
-USED = ("std_msgs", "geometry_msgs", "shape_msgs", "sensor_msgs", "builtin_interfaces")
+USED = (
+    "std_msgs", "geometry_msgs", "shape_msgs", "sensor_msgs", "builtin_interfaces", "diagnostic_msgs", "service_msgs",
+)  # fmt: skip
 
 
 def generate(package: str, definitions: Path, out: Path) -> Path:
     """Write the C and Python code of a package; its folder."""
     source, made = out / "definitions" / package, out / package
-    shutil.copytree(definitions / package, source / "msg")
+    files = []
+    for kind in ("msg", "srv"):
+        for file in sorted((definitions / package).glob(f"*.{kind}")):
+            (source / kind).mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, source / kind)
+            files.append(f"{source}:{kind}/{file.name}")
     made.mkdir()
-    files = [f"{source}:msg/{file.name}" for file in sorted(source.glob("msg/*.msg"))]
     for generator in (
         GenerateC("c"),
         GenerateCTypesupport("c", typesupport_implementations=["rosidl_typesupport_fastrtps_c"]),

@@ -1,7 +1,8 @@
 """Nodes of real rclpy, in its environment: `peer.py hear`, `peer.py drive KIND`, `peer.py publish TOPIC TYPE`,
-`peer.py count TOPIC TYPE NUMBER`, `peer.py command KIND`.
+`peer.py count TOPIC TYPE NUMBER`, `peer.py command KIND`, `peer.py call`, `peer.py weather`.
 
 `hear` reads a JSON list of topics from its standard input and prints what it heard as soon as every topic has spoken.
+`call` reads requests, each a JSON list of a service's name, its type and its fields, and prints each answer or null.
 """
 
 import importlib
@@ -10,6 +11,7 @@ import sys
 import time
 
 import rclpy
+from diagnostic_msgs.msg import KeyValue
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -131,9 +133,53 @@ def command(kind: str) -> None:
     rclpy.spin(node)
 
 
+def fill(message: object, fields: dict[str, object]) -> None:
+    """Set fields of a message; those of a message inside it are a dictionary, key and value pairs a list of two."""
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            fill(getattr(message, name), value)
+        elif name == "attributes":
+            setattr(message, name, [KeyValue(key=key, value=text) for key, text in value])
+        else:
+            setattr(message, name, value)
+
+
+def call() -> None:
+    """Call services, and print each answer with the seconds that it took and the names of all services."""
+    node, clients = Node("caller"), {}
+    for line in sys.stdin:
+        name, kind, fields = json.loads(line)
+        package, _, service = kind.split("/")
+        made = getattr(importlib.import_module(f"{package}.srv"), service)
+        client = clients.setdefault(name, node.create_client(made, name))
+        request = made.Request()
+        fill(request, fields)
+        is_ready = client.wait_for_service(LONGEST_S)
+        began_s = time.monotonic()
+        future = client.call_async(request)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=LONGEST_S)
+        found = future.result()
+        answer = found and {name: getattr(found, name) for name in found.get_fields_and_field_types()}
+        rest = {"ready": is_ready, "took_s": time.monotonic() - began_s, "services": node.get_service_names_and_types()}
+        sys.stdout.write(json.dumps({"answer": answer, **rest}) + "\n")
+        sys.stdout.flush()
+
+
+def weather() -> None:
+    """Publish a weather again and again."""
+    node = Node("weather_maker")
+    message = class_of("carla_msgs/msg/CarlaWeatherParameters")(cloudiness=40.0, sun_altitude_angle=12.5)
+    publisher = node.create_publisher(type(message), "/carla/weather_control", profile())
+    node.create_timer(0.05, lambda: publisher.publish(message))
+    rclpy.spin(node)
+
+
 def main(role: str, *words: str) -> None:
     rclpy.init()
-    roles = {"hear": hear, "drive": drive, "publish": publish, "count": count, "command": command}
+    roles = {
+        "hear": hear, "drive": drive, "publish": publish, "count": count, "command": command, "call": call,
+        "weather": weather,
+    }  # fmt: skip
     try:
         roles[role](*words)
     except (KeyboardInterrupt, ExternalShutdownException):

@@ -69,6 +69,15 @@ class Drive:
     def control(self, control: carla.VehicleControl) -> None:
         self.client.apply_batch_sync([carla.command.ApplyVehicleControl(self.car, control)])
 
+    def rest(self) -> None:
+        """Put the vehicle at the start, without a control; `apply_control` sends none that equals its last one."""
+        for _ in range(20):  # commands that were on their way when the last node ended
+            self.world.tick()
+            time.sleep(0.01)
+        self.control(carla.VehicleControl())
+        self.car.set_transform(self.start)  # before it meets a house
+        self.world.tick()
+
     def until(self, holds: Callable[[], bool]) -> bool:
         """Tick until something holds; whether it does within the limit."""
         until_s = time.monotonic() + LONGEST_S
@@ -102,13 +111,7 @@ def drive() -> Iterator[Drive]:
 
 @pytest.fixture(autouse=True)
 def _at_rest(drive: Drive) -> None:
-    """At the start and without a control; `apply_control` does not send one that equals the last one it sent."""
-    for _ in range(20):  # commands that were on their way when the last node ended
-        drive.world.tick()
-        time.sleep(0.01)
-    drive.control(carla.VehicleControl())
-    drive.car.set_transform(drive.start)  # before it meets a house
-    drive.world.tick()
+    drive.rest()
 
 
 def test_every_topic_arrives_though_no_client_listens(drive: Drive, rclpy_peer: Starts) -> None:
@@ -189,6 +192,22 @@ def test_a_node_that_leaves_is_noted_and_its_last_command_holds(drive: Drive, rc
     peer.kill()
     assert drive.told("the last node that commanded has left; the vehicle keeps its last command")
     assert drive.car.get_control().throttle == 0.75
+
+
+@pytest.mark.parametrize("successors", [("best-effort", "ackermann"), ("ackermann", "best-effort")])
+def test_nodes_take_over_from_one_that_was_killed(
+    drive: Drive, rclpy_peer: Starts, successors: tuple[str, str]
+) -> None:
+    """A node of the same machine takes the ports of the one before it."""
+    peer = rclpy_peer("command", "pedals")
+    for successor in successors:
+        assert drive.until(lambda: drive.car.get_control().throttle > 0.0)
+        peer.kill()
+        peer.wait()
+        assert drive.told("the last node that commanded has left")
+        drive.rest()
+        peer = rclpy_peer("command", successor)
+    assert drive.until(lambda: drive.car.get_control().throttle > 0.0)
 
 
 def test_a_reader_that_is_killed_does_not_hold_up_the_ticks(drive: Drive, rclpy_peer: Starts) -> None:

@@ -29,7 +29,7 @@ from linden_ros2.topic import Topic
 from linden_ros2.types import HUMBLE, KILTED, Generation, Types, types_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from linden_ros2.topic import Message
 
@@ -59,6 +59,7 @@ class DdsNode:
         self._waits: dict[tuple[Topic, ...], Any] = {}
         self._same: dict[str, SameType] = {}
         self._publishers: Publishers | None = None
+        self._of_services: tuple[list[bytes], list[bytes]] = ([], [])
         self._participant: Any = joined(self.domain)
 
     def announce(self, *topics: Topic) -> None:
@@ -74,6 +75,11 @@ class DdsNode:
                 reader = DataReader(*self._endpoint(topic))
                 self._readers[topic.name] = (topic, reader)
                 self._same[topic.name] = SameType(self.types, topic.type, reader.get_matched_publication_data)
+        self._enter()
+
+    def enter_services(self, readers: list[bytes], writers: list[bytes]) -> None:
+        """Enter endpoints of services, which another participant of this process has, in the list of nodes."""
+        self._of_services = (readers, writers)
         self._enter()
 
     def drop(self, *topics: Topic) -> None:
@@ -166,22 +172,29 @@ class DdsNode:
     def _enter(self) -> None:
         """Tell the readers and writers of this node to ROS 2's list of nodes."""
         own = [writer for name, writer in self._writers.items() if name != DISCOVERY.name]
+        readers, writers = self._of_services
         types = node_list_types()
         node = types.message(
             "rmw_dds_common/msg/NodeEntitiesInfo",
             node_namespace="/",
             node_name=self.name,
-            reader_gid_seq=[self._gid(reader) for _, reader in self._readers.values()],
-            writer_gid_seq=[self._gid(writer) for writer in own],
+            reader_gid_seq=[_gid(guid) for guid in [*_guids(each[1] for each in self._readers.values()), *readers]],
+            writer_gid_seq=[_gid(guid) for guid in [*_guids(own), *writers]],
         )
-        entry = types.message(DISCOVERY.type, gid=self._gid(self._participant), node_entities_info_seq=[node])
+        entry = types.message(DISCOVERY.type, gid=_gid(self._participant.guid.bytes), node_entities_info_seq=[node])
         self._writer(DISCOVERY).write(_sample(types, DISCOVERY, entry))
 
-    def _gid(self, entity: Any) -> Any:  # noqa: ANN401 - of cyclonedds in, a message out
-        """The identifier of an entity as ROS 2 writes it."""
-        gid = node_list_types().message("rmw_dds_common/msg/Gid")
-        gid.data[:16] = np.frombuffer(entity.guid.bytes, dtype=np.uint8)
-        return gid
+
+def _guids(entities: Iterable[Any]) -> list[bytes]:
+    """The identifiers of entities of Cyclone DDS."""
+    return [entity.guid.bytes for entity in entities]
+
+
+def _gid(guid: bytes) -> Any:  # noqa: ANN401 - a message
+    """An identifier as ROS 2 writes it."""
+    gid = node_list_types().message("rmw_dds_common/msg/Gid")
+    gid.data[:16] = np.frombuffer(guid, dtype=np.uint8)
+    return gid
 
 
 @cache

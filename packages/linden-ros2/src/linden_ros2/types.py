@@ -47,6 +47,8 @@ class Types:
             name = f"{file.parent.name}/msg/{file.stem}"
             if name not in self.store.fielddefs and name not in own:
                 own.update(get_types_from_msg(file.read_text(encoding="utf-8"), name))
+        if generation is Generation.ROS_2:
+            own.update(_services())
         self.store.register(own)
 
     def message(self, name: str, /, **fields: Any) -> Any:  # noqa: ANN401 - a class made of its definition
@@ -86,6 +88,18 @@ class Types:
         if int(inner[0]) == _BASE and inner[1][0] not in {"string", "wstring"}:
             return np.zeros(length, dtype=_DTYPES.get(inner[1][0], inner[1][0]))
         return [self._blank(inner) for _ in range(length)]
+
+
+def _services() -> dict[str, Any]:
+    """The requests and responses of the services, as types such as ``carla_msgs/srv/SpawnObject_Request``."""
+    found: dict[str, Any] = {}
+    for file in sorted(DEFINITIONS.glob("*/*.srv")):
+        parts = file.read_text(encoding="utf-8").split("---\n")
+        for part, text in zip(("Request", "Response"), parts, strict=True):
+            name = f"{file.stem}_{part}"
+            [fields] = get_types_from_msg(text, f"{file.parent.name}/msg/{name}").values()
+            found[f"{file.parent.name}/srv/{name}"] = fields
+    return found
 
 
 _BASE, _NAME, _ARRAY = 1, 2, 3  # rosbags.interfaces.Nodetype
