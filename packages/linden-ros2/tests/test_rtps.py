@@ -1,5 +1,7 @@
 """RTPS without sockets: bytes there and back, samples that are lost, repeated, or came before the reader."""
 
+import contextlib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -46,19 +48,15 @@ class Link:
 @given(st.binary(max_size=200))
 def test_any_bytes_are_read_or_refused(data: bytes) -> None:
     for whole in (data, wire.MAGIC + bytes(14) + data):
-        try:
+        with contextlib.suppress(WireError):
             list(wire.parsed(whole, CLIENT))
-        except WireError as error:
-            assert str(error)
 
 
 @given(st.binary(max_size=60), st.sampled_from([b"\0\3\0\0", b"\0\2\0\0"]))
 def test_any_parameters_are_read_or_refused(data: bytes, header: bytes) -> None:
-    try:
+    with contextlib.suppress(WireError):
         found, order = wire.list_of_payload(header + data)
         wire.text_of(found.get(5, b""), order)
-    except WireError as error:
-        assert str(error)
 
 
 def test_a_sample_arrives_with_the_request_that_it_answers() -> None:
@@ -82,7 +80,7 @@ def test_a_peer_with_big_endian_submessages_is_read() -> None:
 
 
 @given(st.sets(st.integers(1, 255)))
-def test_the_numbers_that_are_asked_for_arrive(missing: set[int]) -> None:
+def test_the_requested_numbers_arrive(missing: set[int]) -> None:
     asked = tuple(sorted(missing))
     data = wire.message(CLIENT, SERVER, wire.acknowledgement(READER, WRITER, 1, asked, 1))
     assert list(wire.parsed(data, SERVER)) == [Acknowledgement(TO, WRITER, 1, asked)]
@@ -114,7 +112,7 @@ def test_a_late_reader_gets_what_the_writer_still_has() -> None:
     assert not link.writer.match(TO)
 
 
-def test_a_silent_reader_is_asked_until_it_has_left() -> None:
+def test_a_heartbeat_repeats_for_a_silent_reader_until_it_has_left() -> None:
     link = Link()
     link.writer.match(TO)
     link.writer.write(b"1234")

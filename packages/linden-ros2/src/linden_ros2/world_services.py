@@ -178,7 +178,7 @@ class WorldServices:
         for point in points:
             try:
                 return actors.attach(self._context, description, point, 0, "")
-            except Refusal as error:
+            except Refusal as error:  # noqa: PERF203 - the next point may be free
                 refusal = error
         raise refusal
 
