@@ -62,7 +62,9 @@ print(rewards.shape)
 SEARCH = """
 name = "search"
 agents = ["basic"]
-seeds = [0]
+[seeds]
+first = 0
+number = 1
 [[drives]]
 cases = ["red_light_runner_1"]
 vary = ["speed", "lateness"]
@@ -106,14 +108,18 @@ USES = {
     "linden-gym": Use("python many.py", "(100,)"),
     "basu": Use(BASIC, "score"),
     "basu-alpasim": Use(f"python policy.py {BASIC.removeprefix('basu run basic')}", "score"),
-    "basu-carla-log": Use(f"{BASIC} --record && basu metrics runs/latest --metric collisions.py", "collision"),
+    "basu-carla-log": Use(
+        f"{BASIC} --record && basu metrics runs/latest --metric collisions.py", "nobody touched anything"
+    ),
     "basu-leaderboard": Use(BASIC.replace("basic", "leaderboard_agent.py"), "score"),
     "basu-openscenario": Use("basu scenario run drive.xosc", "drive"),
     "basu-ros": Use(f"{BASIC} --rosbag", "score"),
     "basu-search": Use("basu campaign run search.toml --dry-run", "26"),
     "basu-service": Use(f"{BASIC} && basu service falls runs/latest", "of 100"),
     "basu-sumo": Use(f"{BASIC} --sumo random --vehicles 5", "score"),
-    "basu-truth": Use(f"{BASIC} --record && basu truth export runs/latest --format coco -o truth", "frames"),
+    "basu-truth": Use(
+        f"{BASIC} --record && basu truth export runs/latest --sensors sensors.json --format coco -o truth", "frame"
+    ),
     "basu-window": Use(f"{BASIC} --record && python page.py", "http://127.0.0.1"),
 }
 
@@ -128,7 +134,7 @@ def made_files(folder: Path) -> None:
     written(folder, scenario(), "drive.xosc")
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    for name in ("maps/quarter.osm", "metrics/collisions.py", "leaderboard_agent.py"):
+    for name in ("maps/quarter.osm", "metrics/collisions.py", "truth/sensors.json", "leaderboard_agent.py"):
         shutil.copy(ROOT / "examples" / name, folder)
 
 
