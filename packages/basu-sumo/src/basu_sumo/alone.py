@@ -1,7 +1,7 @@
 """SUMO by itself: plays a scenario with vehicles that were driven elsewhere, and reads its outputs.
 
-A vehicle that was driven elsewhere follows its record. SUMO's other drivers see it and give way to it as usual.
-Trips begin and end as the scenario has them, unlike beside a simulator (`trip_starts`, `trip_ends`).
+A vehicle that was driven elsewhere follows its record, and SUMO's drivers give way to it. Trips begin and end as the
+scenario has them, unlike beside a simulator (`trip_starts`, `trip_ends`).
 """
 
 from __future__ import annotations
