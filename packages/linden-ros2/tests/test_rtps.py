@@ -1,5 +1,7 @@
 """RTPS without sockets: bytes there and back, samples that are lost, repeated, or came before the reader."""
 
+import contextlib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -45,20 +47,17 @@ class Link:
 
 @given(st.binary(max_size=200))
 def test_any_bytes_are_read_or_refused(data: bytes) -> None:
-    for whole in (data, wire.MAGIC + bytes(14) + data):
-        try:
-            list(wire.parsed(whole, CLIENT))
-        except WireError as error:
-            assert str(error)
+    with contextlib.suppress(WireError):
+        list(wire.parsed(wire.MAGIC + bytes(14) + data, CLIENT))
+    with pytest.raises(WireError):
+        list(wire.parsed(data, CLIENT))
 
 
 @given(st.binary(max_size=60), st.sampled_from([b"\0\3\0\0", b"\0\2\0\0"]))
 def test_any_parameters_are_read_or_refused(data: bytes, header: bytes) -> None:
-    try:
+    with contextlib.suppress(WireError):
         found, order = wire.list_of_payload(header + data)
-        wire.text_of(found.get(5, b""), order)
-    except WireError as error:
-        assert str(error)
+        assert isinstance(wire.text_of(found[5], order) if 5 in found else "", str)
 
 
 def test_a_sample_arrives_with_the_request_that_it_answers() -> None:

@@ -64,7 +64,7 @@ def pose(place: carla.Transform) -> dict[str, Any]:
 def udp_ports(process: int) -> list[int]:
     """The ports of a process's sockets."""
     folder = Path(f"/proc/{process}")
-    own = {os.readlink(file) for file in (folder / "fd").iterdir()}
+    own = {str(file.readlink()) for file in (folder / "fd").iterdir()}
     rows = [line.split() for line in (folder / "net/udp").read_text().splitlines()[1:]]
     return [int(row[1].partition(":")[2], 16) for row in rows if f"socket:[{row[9]}]" in own]
 

@@ -303,7 +303,7 @@ class ServiceParticipant:
             lease = found.get(PID_LEASE, b"")
             if meta is None or default is None or found.get(PID_VENDOR, b"")[:2] == CYCLONE:
                 return
-            lease_s = float(struct.unpack(f"{order}i", lease[:4])[0]) if len(lease) >= 4 else LEASE_S  # noqa: PLR2004
+            lease_s = float(struct.unpack(f"{order}i", lease[:4])[0]) if len(lease) >= 4 else LEASE_S
             self._peers[prefix] = _Peer(self._reached(meta), self._reached(default), lease_s)
         self._peers[prefix].heard_s = now_s
         if is_new:
@@ -335,7 +335,7 @@ class ServiceParticipant:
         for to, submessage in outgoing:
             peer = self._peers.get(to.prefix)
             if peer is not None:
-                is_built_in = to.entity[3] & 0xC0 == 0xC0  # noqa: PLR2004 - the kind of built-in entities (9.3.1.2)
+                is_built_in = to.entity[3] & 0xC0 == 0xC0
                 datagram = wire.message(self._prefix, to.prefix, submessage)
                 self._transmit(datagram, peer.meta if is_built_in else peer.default)
 

@@ -1,6 +1,7 @@
 """Messages of RTPS 2.3 as bytes: the submessages and parameter lists that services need.
 
-Source: OMG DDSI-RTPS 2.3, sections 8.3.7, 9.4 and 9.6; the related sample identity is of OMG DDS-RPC 1.0, section 7.8.2.
+Source: OMG DDSI-RTPS 2.3, sections 8.3.7, 9.4 and 9.6; the related sample identity is of OMG DDS-RPC 1.0,
+section 7.8.2.
 """
 
 from __future__ import annotations
@@ -92,7 +93,7 @@ def parsed(data: bytes, own_prefix: bytes) -> Iterator[Submessage]:
     Raises:
         WireError: the bytes are no RTPS.
     """
-    if len(data) < 20 or data[:4] != MAGIC[:4]:  # noqa: PLR2004 - the header
+    if len(data) < 20 or data[:4] != MAGIC[:4]:
         raise WireError(f"{len(data)} bytes that do not begin with RTPS")
     source, is_ours, at = data[8:20], True, 20
     try:
@@ -120,7 +121,8 @@ def parsed(data: bytes, own_prefix: bytes) -> Iterator[Submessage]:
 
 def _sample(body: bytes, order: str, flags: int, source: bytes) -> Sample:
     (skip,) = struct.unpack_from(f"{order}H", body, 2)
-    at, inline_qos = 4 + skip, {}
+    at = 4 + int(skip)
+    inline_qos: dict[int, bytes] = {}
     if flags & HAS_INLINE_QOS:
         inline_qos, at = _parameters(body, order, at)
     payload = body[at:] if flags & HAS_DATA else b""
@@ -142,7 +144,7 @@ def _number_set(body: bytes, order: str, at: int) -> tuple[int, tuple[int, ...]]
 
 
 def _parameters(body: bytes, order: str, at: int) -> tuple[dict[int, bytes], int]:
-    """A parameter list by number, and the byte after it. Of locators, which come several times, the first of UDP counts."""
+    """A parameter list by number, and the byte after it. Of several locators the first one of UDP counts."""
     found: dict[int, bytes] = {}
     while True:
         number, size = struct.unpack_from(f"{order}HH", body, at)
@@ -246,7 +248,7 @@ def locator(address: tuple[str, int]) -> bytes:
 
 def address_of(value: bytes, order: str) -> tuple[str, int] | None:
     """Return the address and port of a locator; None for another kind than UDP over IPv4."""
-    if len(value) != 24:  # noqa: PLR2004 - a locator
+    if len(value) != 24:
         return None
     kind, port, address = struct.unpack(f"{order}iI12x4s", value)
     return (socket.inet_ntoa(address), port) if kind == UDP_V4 and 0 < port < 1 << 16 else None

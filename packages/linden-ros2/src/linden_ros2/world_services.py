@@ -3,6 +3,7 @@
 Names and types are the ros-bridge's (carla_ros_bridge/bridge.py), so that its users' programs call them unchanged.
 """
 
+import contextlib
 import fnmatch
 import math
 import random
@@ -174,13 +175,12 @@ class WorldServices:
         """
         points = list(self._context.world.spawn_points)
         self._random.shuffle(points)
-        refusal = Refusal("this map has no spawn points; ask for a transform in place of random_pose")
-        for point in points:
-            try:
+        if not points:
+            raise Refusal("this map has no spawn points; ask for a transform in place of random_pose")
+        for point in points[:-1]:
+            with contextlib.suppress(Refusal):  # something stands there
                 return actors.attach(self._context, description, point, 0, "")
-            except Refusal as error:
-                refusal = error
-        raise refusal
+        return actors.attach(self._context, description, points[-1], 0, "")
 
 
 def _transform(pose: Any) -> Transform:  # noqa: ANN401 - a message
