@@ -81,7 +81,7 @@ def test_a_peer_with_big_endian_submessages_is_read() -> None:
 
 
 @given(st.sets(st.integers(1, 255)))
-def test_the_numbers_that_are_asked_for_arrive(missing: set[int]) -> None:
+def test_a_question_names_each_missing_number(missing: set[int]) -> None:
     asked = tuple(sorted(missing))
     data = wire.message(CLIENT, SERVER, wire.acknowledgement(READER, WRITER, 1, asked, 1))
     assert list(wire.parsed(data, SERVER)) == [Acknowledgement(TO, WRITER, 1, asked)]
@@ -113,7 +113,7 @@ def test_a_late_reader_gets_what_the_writer_still_has() -> None:
     assert not link.writer.match(TO)
 
 
-def test_a_silent_reader_is_asked_until_it_has_left() -> None:
+def test_a_writer_repeats_its_heartbeat_until_a_silent_reader_has_left() -> None:
     link = Link()
     link.writer.match(TO)
     link.writer.write(b"1234")

@@ -24,7 +24,7 @@ TO_INLINE_QOS = 16
 """Bytes between the field octetsToInlineQos and the inline QoS."""
 PL_CDR_LE = b"\x00\x03\x00\x00"
 SENTINEL = 1
-NOBODY = b"\0\0\0\0"
+ANY_READER = b"\0\0\0\0"
 """The entity of no reader: all readers of the writer."""
 LARGEST_SET = 256
 """Numbers that one set of sequence numbers can hold (9.4.2.6)."""
@@ -76,7 +76,7 @@ class Heartbeat(NamedTuple):
 
 
 class Acknowledgement(NamedTuple):
-    """ACKNACK: a reader has all samples below ``base``, and asks for those that it misses."""
+    """ACKNACK: a reader has all samples below ``base``, and asks for missing samples."""
 
     reader: Guid
     writer: bytes
@@ -191,7 +191,7 @@ def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int) -
 
 
 def acknowledgement(reader: bytes, writer: bytes, base: int, missing: tuple[int, ...], count: int) -> bytes:
-    """Return ACKNACK; at most `LARGEST_SET` numbers from ``base`` on are asked for."""
+    """Return ACKNACK; at most `LARGEST_SET` numbers from ``base`` on are in it."""
     asked = [each - base for each in missing if each - base < LARGEST_SET]
     words = [0] * ((max(asked, default=-1) + 32) // 32)
     for each in asked:
