@@ -1,5 +1,9 @@
 """Claims about driving the experiment: in a live simulator as far as it is short, and what ends it."""
 
+import json
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
@@ -84,6 +88,48 @@ def test_it_goes_on_with_the_drives_that_are_missing(
     }  # fmt: skip
     assert main(["experiment", "thesis", "--resume", str(tmp_path)]) == 2
     assert "is no folder of an experiment that can go on" in capsys.readouterr().err
+
+
+KILLED_AT_THIRD = """
+import json, os, signal, sys
+from contextlib import nullcontext
+from pathlib import Path
+from types import SimpleNamespace
+
+sys.path[:] = json.loads(sys.argv[1])
+from basu.cli import main
+from basu.running import thesis_experiment
+from fakes.run_records import crashing, record, written
+
+told, *words = sys.argv[2:]
+
+def drive(case, options, *_):
+    with open(told, "a") as file:
+        file.write(case.agent + "\\n")
+    if Path(told).read_text().count("\\n") == 3:
+        (Path(options.output) / case.row).mkdir()  # as far as the third drive came
+        os.kill(os.getpid(), signal.SIGKILL)
+    return written(Path(options.output) / case.row, record(crashing(), agent=case.agent))
+
+thesis_experiment._drive = drive
+thesis_experiment.simulator_for = lambda _: nullcontext(SimpleNamespace())
+sys.exit(main(["experiment", "thesis", *words]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_it_goes_on_after_sigkill(tmp_path: Path) -> None:
+    told, output = tmp_path / "driven", tmp_path / "runs"
+
+    def experiment(*words: str) -> int:
+        arguments = [json.dumps(sys.path), str(told), *words]
+        return subprocess.run([sys.executable, "-c", KILLED_AT_THIRD, *arguments], check=False).returncode
+
+    assert experiment("--output", str(output)) == -signal.SIGKILL
+    (folder,) = output.glob("experiment-thesis-*")
+    assert experiment("--resume", str(folder)) == 0
+    assert told.read_text().split() == ["basic", "deviating", "forward", "forward", "human"]
+    assert {"basic", "behavioral", "forward", "human", "experiment.json"} <= {path.name for path in folder.iterdir()}
 
 
 def test_it_drives_in_a_simulator_that_runs_already(
