@@ -41,7 +41,7 @@ def drive(folder: Path, drives: int, options: list[str]) -> tuple[float, float, 
     file.write_text(CAMPAIGN.format(sweep=-(-drives // AGENTS)))
     command = [str(Path(sys.executable).with_name("basu"))]
     if not Path(command[0]).exists():
-        command = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
+        command = [sys.executable, "-c", "from basu.cli import entry_point; entry_point()"]
     command += ["campaign", "run", str(file), "--drives", str(drives), "--output", str(folder / "out"), *options]
     began_s = time.perf_counter()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

@@ -28,7 +28,7 @@ from basu.files import read_json
 
 ROLES = {"worker": "basu.jobs.processes", "agent": "basu.agents.process", "simulator": "linden"}  # by command lines
 END_S = 60.0
-BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
+BASU = [sys.executable, "-c", "from basu.cli import entry_point; entry_point()"]
 
 
 def largest_mb(driver: psutil.Process) -> dict[str, float]:

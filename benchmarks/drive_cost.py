@@ -45,7 +45,7 @@ def main() -> None:
 
 def drive(words: list[str]) -> tuple[float, float]:
     """Return the processor time of a drive with all its processes, and its wall time, both in s."""
-    program = "import sys; from basu.cli import main; sys.exit(main(sys.argv[1:]))"
+    program = "from basu.cli import entry_point; entry_point()"
     began_s = time.perf_counter()
     started = subprocess.Popen([sys.executable, "-c", program, *words], stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(started.pid, 0)  # with all descendants that were waited for

@@ -34,7 +34,7 @@ class Short(AutonomousAgent):
 
 
 def command(agent: Path, output: Path, runs: int, *more: str) -> list[str]:
-    basu = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
+    basu = [sys.executable, "-c", "from basu.cli import entry_point; entry_point()"]
     return [*basu, "run", str(agent), "--repetitions", str(runs), "--series", "s", "--output", str(output), *more]
 
 

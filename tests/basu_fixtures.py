@@ -21,6 +21,8 @@ from shared_client import shared_client
 from tracing import untraced
 
 PACKAGES = Path(__file__).parents[1] / "packages"
+BASU = (sys.executable, "-c", "from basu.cli import entry_point; entry_point()")
+"""The command ``basu`` in a process of its own; arguments follow."""
 SHORT_ROUTE = PACKAGES / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
 
 

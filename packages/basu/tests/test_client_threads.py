@@ -35,3 +35,25 @@ def test_without_it_the_process_would_have_ended() -> None:
 
 def test_on_the_main_thread_nothing_can_be_saved() -> None:
     assert ended("client_threads.hold()", "terminate()").returncode == -signal.SIGABRT
+
+
+COMMAND = """
+import ctypes, threading, time
+from basu import client_threads
+from basu.cli import entry_point, main
+
+client_threads.hold()
+threading.Thread(target=ctypes.CDLL(client_threads.LIBRARY)._ZSt9terminatev).start()
+while not client_threads.is_held():
+    time.sleep(0.01)
+assert main(["nothing"]) == 2
+print("the caller goes on")
+entry_point()
+"""
+
+
+def test_a_held_thread_ends_the_process_of_a_command_and_not_a_caller_of_main() -> None:
+    """A worker of the tests ended without a word, because a test before had a thread that was held."""
+    words = [sys.executable, "-c", COMMAND, "nothing"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "the caller goes on\n"), done.stderr

@@ -30,7 +30,7 @@ from basu_ros.topics import odometry_of
 from linden_ros2.basic_messages import NS_PER_S
 
 LAUNCH = Path(__file__).parents[3] / "docker" / "autoware" / "autoware_ai.launch"
-BASU = "import sys; from basu.cli import main; sys.exit(main(sys.argv[1:]))"
+BASU = "from basu.cli import entry_point; entry_point()"
 GOAL_CM = 5.0
 TRUTH = odometry_of("hero")._replace(depth=1000)
 FOUND = NDT_POSE._replace(depth=1000)

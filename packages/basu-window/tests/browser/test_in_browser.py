@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,13 +11,12 @@ from playwright.sync_api import Browser
 
 from basu.output.report.html.page import write_report
 from basu.records.history.files import read_history
-from basu_fixtures import SHORT_ROUTE
+from basu_fixtures import BASU, SHORT_ROUTE
 from browsers import running_browser
 from fakes.run_records import crashing, record, written
 from opendrive_texts import SIGNS_AND_LIGHTS
 from window_pages import WAIT_MS, page_of
 
-BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
 PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],
   buttons: Array.from({{length: 17}}, (_, at) => ({{value: at === 7 ? {throttle} : at === 6 ? {brake} : 0}}))}}]"""
 

@@ -3,7 +3,6 @@
 import json
 import math
 import subprocess
-import sys
 from pathlib import Path
 
 import carla
@@ -13,6 +12,7 @@ import pytest
 from basu.cli import main
 from basu.managers.traffic_manager import CLEAR_M, REACH_M, distance_m, suitable, vehicles_for
 from basu.records.history.files import read_history
+from basu_fixtures import BASU
 from fakes.drives import straight_route
 from servers import RunningServer
 
@@ -194,10 +194,9 @@ def test_a_simulator_that_dies_under_traffic_is_reported_and_what_was_measured_i
     options = ["--routes", str(route_file), "--vehicles", "10", "--walkers", "5"]
     # the agent ends the benchmark's child, so it drives in the benchmark's process
     arguments = ["run", str(agent), "--in-process", *options, "--output", str(tmp_path / "runs")]
-    program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
     # in a process of its own: the client of a dead simulator keeps its Traffic Manager for as long as it lives, which
     # is until that has waited in vain for --timeout
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    ended = subprocess.run([*BASU, *arguments], capture_output=True, text=True, check=False)
     assert ended.returncode == 3, ended.stderr
     result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
     assert (result["status"], result["meta"]["ticks"]) == ("SimulatorFailed", 20)

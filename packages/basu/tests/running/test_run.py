@@ -15,6 +15,7 @@ import pytest
 
 from basu.cli import main
 from basu.records.history.files import read_history
+from basu_fixtures import BASU
 from cheating_agent import BENCHMARK
 from servers import RunningServer, running_server
 
@@ -256,8 +257,7 @@ def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(
 ) -> None:
     deed = kills(BENCHMARK, "signal.SIGKILL")
     arguments = ["run", str(doing(tmp_path, deed)), "--routes", str(route_file), "--output", str(tmp_path / "runs")]
-    program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
-    killed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
+    killed = subprocess.run([*BASU, *arguments], capture_output=True, check=False)
     assert killed.returncode == -9
     servers = [int(number) for number in (tmp_path / "children").read_text().split()]
     assert len(servers) == 2  # the simulator, and the keeper of the agent

@@ -23,6 +23,7 @@ from basu.running.preparation import RequestedRun
 from basu.running.series import RESOLVED, Series, conditions, open_series
 from basu.settings.option import fields_of
 from basu.simulator import connect
+from basu_fixtures import BASU
 from fakes.results import a_result
 from servers import RunningServer
 
@@ -270,10 +271,9 @@ def test_runs_broken_off_three_times_are_all_there_and_counted_once(
             "--output",
             str(output),
         ]
-        program = f"import sys; from basu.cli import main; sys.exit(main({['run', str(agent), *series, *options]!r}))"
         environment = {**os.environ, "ATTEMPTS": str(attempts)}
         return subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, check=False, env=environment
+            [*BASU, "run", str(agent), *series, *options], capture_output=True, text=True, check=False, env=environment
         )
 
     ends = [basu(), *(basu("--resume") for _ in range(3))]

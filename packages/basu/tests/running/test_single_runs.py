@@ -16,6 +16,7 @@ from basu.running.drive import DriveDone, not_begun
 from basu.running.folder_lock import locked
 from basu.running.single_runs import SingleRuns, open_runs
 from basu.simulator import connect
+from basu_fixtures import BASU
 from fakes.results import a_result
 from servers import RunningServer
 
@@ -120,11 +121,8 @@ def basu(simulator: RunningServer, tmp_path: Path, route_file: Path) -> Basu:
         connect("127.0.0.1", simulator.port, 20.0).reload_world()  # a killed benchmark leaves its vehicle there
         words = ["run", str(agent), "--in-process", "--host", "127.0.0.1", "--port", str(simulator.port)]
         words += ["--routes", str(route_file), "--output", str(tmp_path / "runs"), *options]
-        program = f"import sys; from basu.cli import main; sys.exit(main({words!r}))"
         environment = {**os.environ, "ATTEMPTS": str(attempts), "KILLED": str(killed)}
-        return subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, check=False, env=environment
-        )
+        return subprocess.run([*BASU, *words], capture_output=True, text=True, check=False, env=environment)
 
     return run
 

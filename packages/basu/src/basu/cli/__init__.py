@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 import traceback
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import basu
 from basu import client_threads, plugins
@@ -45,8 +45,16 @@ COMMANDS = {
 UNREAD = 141  # 128 + SIGPIPE, as shells have it
 
 
+def entry_point() -> NoReturn:
+    """Run the command of this process and end the process, even if a thread of the official client never ends."""
+    code = main()
+    if client_threads.is_held():
+        client_threads.leave(code)
+    sys.exit(code)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; what a person can mend is one sentence and an exit code."""
+    """Run a command and return its exit code; what a person can mend is one sentence."""
     words = sys.argv[1:] if argv is None else list(argv)
     replaced_home()  # before the official client is imported
     try:
@@ -59,8 +67,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         code = UNREAD
     if (agents := sys.modules.get("basu.agents.process.agent_process")) is not None:
         agents.end_unused()
-    if client_threads.is_held():
-        client_threads.leave(code)
     return code
 
 
