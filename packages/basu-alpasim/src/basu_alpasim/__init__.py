@@ -1,4 +1,4 @@
-"""AlpaSim's ``egodriver`` protocol: its policies as agents of BASU, and agents of BASU as policies."""
+"""Adapters of AlpaSim's ``egodriver`` policies and BASU's agents; the import makes gRPC log errors only."""
 
 import os
 

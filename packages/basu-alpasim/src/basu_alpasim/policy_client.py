@@ -1,4 +1,4 @@
-"""The client of a policy's ``egodriver`` service: its calls within the limits of a step, failures as the agent's.
+"""`PolicyClient`: calls a policy's ``egodriver`` service with time limits; a failed call is the agent's failure.
 
 Each sentence names the call, the address and the simulated time.
 """

@@ -1,4 +1,4 @@
-"""The trajectory that an agent of BASU plans: its driver's decision now, and its planner rolled out along its path.
+"""`PlanningDriver`: turns a decision of BASU's driver into a trajectory by repeating the planner's step.
 
 A trajectory repeats the planner's step with the restrictions of this moment: bends, lower limits, lines, other actors.
 They come nearer as the vehicle goes on. Nothing moves meanwhile: a red light stays red, and an actor keeps its place.

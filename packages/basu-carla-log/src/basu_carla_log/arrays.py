@@ -75,7 +75,7 @@ def actor_arrays(log: Log, locations_m: NDArray[np.float32], actor_id: int) -> A
 
 
 def _column(log: Log, kind: Kind, name: str, actor_id: int, frame: NDArray[np.int64]) -> F64:
-    """A column of another table in the requested frames; nan where the actor has no record."""
+    """Return a column of another table at the requested frames; nan in frames without a record of the actor."""
     found = log.table(kind).of(actor_id)
     values = found.rows[name].astype(np.float64)
     out = np.full((len(frame), *values.shape[1:]), np.nan)

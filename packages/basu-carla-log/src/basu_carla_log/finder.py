@@ -1,4 +1,4 @@
-"""Finds what a question is about in the tables of a recording: an actor by id or role, a frame, its record."""
+"""`Finder`: finds an actor by id or role in a recording, its records by frame, and their vectors and transforms."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Finder:
         self._log = log
 
     def id(self, actor: Actor) -> int:
-        """An actor's id; of a role name, that of the first actor with it.
+        """Return the actor's id; for a role name, the id of the first actor with that role.
 
         Raises:
             IndexError: no actor has the role. (ScenarioRunner's log fails here with an index, too.)

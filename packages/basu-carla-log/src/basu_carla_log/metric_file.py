@@ -1,4 +1,4 @@
-"""Runs a user's ScenarioRunner metric from a Python file, and keeps or shows its pictures.
+"""`run_metric` runs a metric from a Python file and saves or shows its pictures; `BasicMetric` is its base class.
 
 Files written for ScenarioRunner import its ``BasicMetric``. Where ScenarioRunner is not installed, ours stands in
 under that name as long as the file runs.

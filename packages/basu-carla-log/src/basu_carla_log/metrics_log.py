@@ -185,7 +185,7 @@ class MetricsLog:
         return None if row is None else values.lamps(int(row["bits"]))
 
     def is_vehicle_light_active(self, light: carla.VehicleLightState, vehicle_id: Actor, frame: int) -> bool:
-        """Whether a lamp is on."""
+        """Return whether a lamp of a vehicle is on in a frame."""
         return light in (self.get_vehicle_lights(vehicle_id, frame) or ())
 
     def get_scene_light_state(self, light_id: int, frame: int) -> carla.LightState | None:

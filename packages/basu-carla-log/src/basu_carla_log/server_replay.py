@@ -1,4 +1,4 @@
-"""Replays a recorder file on a simulator in real time, for every client of CARLA's."""
+"""`play`: replays a recorder file in real time on a running simulator, or on one that it starts."""
 
 from __future__ import annotations
 

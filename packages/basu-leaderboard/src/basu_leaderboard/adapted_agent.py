@@ -62,7 +62,7 @@ class LeaderboardAgent(AutonomousAgent):
         return entries
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
-        """One step of the agent's, with its measurements in the leaderboard's form."""
+        """Call the agent's ``run_step`` with measurements in the leaderboard's form, and return its control."""
         assert self._providers_of_run is not None  # setup came first
         snapshot = self.world.get_snapshot()
         timestamp_s = self._providers_of_run.tick(snapshot.timestamp)

@@ -1,4 +1,4 @@
-"""A BASU agent in a foreign host's world: made from a config file, bound at its first step, stepped with arrays."""
+"""`ExportedAgent`: a BASU agent for a foreign host; reads a config file, binds to the host's world, steps on arrays."""
 
 from __future__ import annotations
 

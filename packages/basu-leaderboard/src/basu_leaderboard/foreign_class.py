@@ -1,4 +1,4 @@
-"""Finds the class of an agent of the leaderboard or of ScenarioRunner in a file, and checks its methods."""
+"""`foreign_agent`: finds a leaderboard or ScenarioRunner agent in a file, checks it, and says how to call it."""
 
 from __future__ import annotations
 

@@ -169,7 +169,7 @@ def _exported_entry(spec: SensorSpec) -> dict[str, Any]:
 
 
 def _number(name: str, text: str) -> Any:  # noqa: ANN401 - a number where it is one
-    """A blueprint's text as the number that it says."""
+    """Convert a blueprint's attribute to a number; return other text unchanged."""
     try:
         value = float(text)
     except ValueError:

@@ -40,7 +40,7 @@ def objects_of(role: str) -> Topic:
 
 
 def info_of(role: str) -> Topic:
-    """Return the topic of what does not change about a vehicle: wheels, engine, mass."""
+    """Return the topic of a vehicle's constant data: wheels, engine, mass."""
     return Topic(f"/carla/{role}/vehicle_info", "carla_msgs/msg/CarlaEgoVehicleInfo", is_latched=True, depth=1)
 
 

@@ -125,7 +125,7 @@ def searches_in(folder: Path, table: pa.Table) -> list[Drives]:
 
 
 def boundary_in(drives: Drives) -> Boundary:
-    """The boundary that a search has found."""
+    """Return the failure boundary of a search, from its judged drives."""
     judged = drives.judged
     points, failed = drives.points[judged], drives.failed[judged] > 0.5
     if not failed.any() or failed.all():

@@ -70,7 +70,10 @@ def mixture_of(made: Round) -> Mixture:
 
 
 def weights_of(made: Round) -> NDArray[np.float64]:
-    """(n,) the nominal density over that of the mixture, at a round's drives; none above 1 over the plain share."""
+    """Return the importance weight (n,) of each drive of a round: nominal density divided by the mixture's density.
+
+    No weight is above 1 divided by the plain share.
+    """
     weights: NDArray[np.float64] = np.exp(-logsumexp(_log_ratios(made), axis=0))
     return weights
 

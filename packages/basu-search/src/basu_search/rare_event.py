@@ -1,4 +1,4 @@
-"""The probability of a rare failure by importance sampling, with its variance, its interval, and whether to trust it.
+"""`CrossEntropy` proposes drives for a rare failure; `estimate` gives its probability, an interval, and cautions.
 
 Drives are drawn from a mixture under which failures are common (``proposal``), and each counts with the weight
 ``nominal density / density of the mixture``. The cross-entropy method moves the mixture: Rubinstein and Kroese 2004,

@@ -1,4 +1,4 @@
-"""Rounds of proposals, and what is known after some of them: the values that both kinds of search exchange."""
+"""`Round` (proposed drives), `Known` (finished drives) and `Proposer`, the protocol of both kinds of search."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The state of every search of a campaign: its rounds, written before they are driven, and what came of them.
+"""`Strands`: all searches of a campaign; a file for each holds its rounds, so that a resumed campaign repeats them.
 
 A strand is one search: a case with a weather and a seed, for one agent. A file for each strand below ``search`` holds
 its rounds. A resumed campaign reads them, so it drives what it would have driven.

@@ -1,4 +1,4 @@
-"""The surrogate of a search: a Gaussian process that tells where the boundary between success and failure lies.
+"""`Surrogate` and `SeveritySurrogate`: Gaussian processes that predict where drives fail, and how severe they are.
 
 Rasmussen and Williams 2006, "Gaussian Processes for Machine Learning", section 3.4 (classification by Laplace's
 approximation). A latent function is positive where a drive fails. Its posterior at a point is a normal distribution,

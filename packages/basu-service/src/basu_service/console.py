@@ -83,7 +83,7 @@ def _vehicle(vehicle: VehiclePart) -> str:
 
 
 def table(document: ServiceDocument) -> str:
-    """Return the figures as lines."""
+    """Return the figures of a service as lines of text."""
     return "\n".join(f"{name:<{WIDTH}}{value}" for name, value in facts(document))
 
 

@@ -1,4 +1,4 @@
-"""Smooth sideways movement: SUMO changes lanes and parks within one step, what is shown takes its time.
+"""`Sideways`: spreads SUMO's sudden sideways steps, at lane changes and parking, over several simulated steps.
 
 The shown pose follows SUMO's. After a step aside, the distance that is left is kept as a shift, which then shrinks.
 """

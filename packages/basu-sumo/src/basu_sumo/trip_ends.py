@@ -1,4 +1,4 @@
-"""Streets of SUMO's network with the places where it ends, and trips that go on instead of ending in sight."""
+"""`TripEnds` extends trips that would end in sight of a simulator's vehicle; `Streets` lists the network's streets."""
 
 from __future__ import annotations
 

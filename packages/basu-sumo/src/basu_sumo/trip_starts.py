@@ -1,4 +1,4 @@
-"""Trips that begin later instead of in sight of a vehicle of the simulator."""
+"""`TripStarts`: delays trips that would begin in sight of a vehicle of the simulator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The class of an actor or of a thing of the map; those without one are no objects of the truth."""
+"""`category_of` and tables: the class of an actor or a map object; objects without a class are not in the truth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cameras and lidars of a recorded run, and their twins, which tell the object of each pixel and each point."""
+"""`Declared`: a camera or lidar that a run declared, and its twins, the sensors that report which object is seen."""
 
 from __future__ import annotations
 

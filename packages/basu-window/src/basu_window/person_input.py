@@ -1,4 +1,4 @@
-"""The person's input in a run: a page of the browser or a recorded session of keys, and the managers for both."""
+"""`person_for` chooses a run's input, a browser page or recorded keys; `KeysManager` checks and writes such keys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The output ``window``: the page of the browser with the person before it, and recorded keys."""
+"""Output plugin ``window``: returns the managers of the browser page and of recorded keys for a run."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         return concatenate(self.single_observation_space, self._seen, empty)  # type: ignore[arg-type, return-value]
 
     def _begun(self, given: dict[int, tuple[Any, ...]]) -> dict[int, Any]:
-        """Resets, repeated in a fresh worker where one ended over its own.
+        """Reset environments and return the answers; if a worker ends in a reset, a new worker repeats that reset.
 
         Raises:
             SimulatorError: a worker ends again and again.

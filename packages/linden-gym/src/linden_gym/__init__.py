@@ -1,4 +1,4 @@
-"""Many gymnasium environments in one process, on `linden.Worlds`, by the rules of `basu.gym`.
+"""Registers ``linden/Shuttle-v0`` with gymnasium: many environments on `linden.Worlds`, or a single one over a client.
 
 After ``import linden_gym``, ``gymnasium.make_vec("linden/Shuttle-v0", num_envs=1000)`` makes them, and
 ``gymnasium.make`` makes a single one through the official client. See ``docs/how-to/worlds.md``.

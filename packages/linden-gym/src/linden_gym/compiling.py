@@ -1,4 +1,4 @@
-"""The kernels of environments, for `linden compile`: a short drive compiles all that a step and a reset call."""
+"""`compile_environments`, for `linden compile`: compiles the environments' kernels by a short drive."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Beginnings of episodes: a vehicle at rest at the route's beginning, or at another point of the route."""
+"""`Starts` gives the states of vehicles that begin at places along a route; `settled` puts vehicles at rest there."""
 
 from __future__ import annotations
 

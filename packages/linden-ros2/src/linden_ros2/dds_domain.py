@@ -1,4 +1,4 @@
-"""The domain of DDS that a node of ROS 2 joins, and its settings, from the variables of ROS and Cyclone DDS."""
+"""`joined`: joins ROS 2's DDS domain; domain and settings come from the variables of ROS and Cyclone DDS."""
 
 from __future__ import annotations
 

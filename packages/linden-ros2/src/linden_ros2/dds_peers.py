@@ -85,7 +85,7 @@ def _reason(topic: Topic, types: Types, publisher: Any) -> str:  # noqa: ANN401 
 
 
 def _type_hash(qos: Any) -> Any:  # noqa: ANN401 - of cyclonedds in, bytes or None out
-    """The hash that an endpoint tells; None without one."""
+    """Return the type hash in an endpoint's user data; None if it has none."""
     found = TYPE_HASH.search(qos[Policy.Userdata].data) if Policy.Userdata in qos else None
     return None if found is None else found[1]
 

@@ -1,4 +1,4 @@
-"""Names of actors on ROS 2, as CARLA's own publisher makes them, and the topics that follow from them."""
+"""Names and topics of actors on ROS 2, as in CARLA's own publisher, and which actors take commands from ROS 2."""
 
 from typing import TYPE_CHECKING
 

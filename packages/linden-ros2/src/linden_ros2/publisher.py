@@ -1,4 +1,4 @@
-"""`WorldPublisher`: publishes the clock, transforms and sensors of a server's world, as CARLA started with --ros2 does.
+"""`WorldPublisher`: publishes a world on ROS 2 and applies the commands it receives, as CARLA with --ros2 does.
 
 Topics and names are CARLA's (LibCarla's ros2). Values have the axes that REP 103 and the ros-bridge give them.
 """

@@ -1,4 +1,4 @@
-"""Messages of sensors: images with camera matrices, point clouds of lidars and radars, GNSS, IMU, contacts, lanes.
+"""Messages of sensors, as the ros-bridge or CARLA's own publisher has them: images, clouds, GNSS, IMU, contacts, lanes.
 
 Layouts are those of the official ros-bridge (carla_ros_bridge, master of July 2022), so that its users find the same
 fields. A measurement is a ``carla.SensorData`` or anything with the same fields.
@@ -91,7 +91,7 @@ def sensor_messages(
 
 
 def sensor_types(type_id: str, convention: Convention | None = None) -> list[tuple[str, str]]:
-    """Return what follows the topic of a sensor of CARLA's type, and the message type, for each of its topics."""
+    """Return the topics of a sensor type, each as the end of its name and its message type."""
     way = convention or BRIDGE
     picture = [("/image", "sensor_msgs/msg/Image"), ("/camera_info", "sensor_msgs/msg/CameraInfo")]
     if type_id in way.pictures:

@@ -1,4 +1,4 @@
-"""`Hub`: what pages are shown and what they have missed. Knows no socket and no clock of its own.
+"""`Hub`: queues frames and notes for each page of a window, and keeps the last notes for new pages. Has no socket.
 
 A page takes notes in their order. It takes the newest frame, readings and measurements only: a page that reads slowly
 misses frames. If notes pile up before a page, it is closed with a sentence.

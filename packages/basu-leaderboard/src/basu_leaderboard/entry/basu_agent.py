@@ -1,4 +1,4 @@
-"""A BASU agent as the CARLA leaderboard (1.0, 2.x) and ScenarioRunner want one: give either this file as ``--agent``.
+"""`BasuAgent`: runs a BASU agent in the CARLA leaderboard or ScenarioRunner; pass this file as ``--agent``.
 
 Which agent it is stands in the file of ``--agent-config`` (leaderboard) or ``--agentConfig`` (ScenarioRunner):
 ``{"agent": "basic"}``, and see :class:`basu_leaderboard.exported_agent.ExportConfig`. ScenarioRunner finds the

@@ -1,4 +1,4 @@
-"""What a rehearsed tree did: which trigger each motion waited for, and when that came true.
+"""`phases_of`: divides each actor's motion in a rehearsal into parts, each with its trigger and the trigger's time.
 
 A behaviour tree is a program, and a storyboard is a set of events. The triggers of the tree divide the motion of each
 actor into parts. A part begins when its trigger comes true, whatever the ego did before.

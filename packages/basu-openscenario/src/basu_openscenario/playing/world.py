@@ -99,7 +99,7 @@ class World:
             )
 
     def _check_lane(self, number: str, lane: int, s_m: float) -> None:
-        """Refuse a lane that a road does not have there."""
+        """Raise ScenarioError if the road has no such lane at ``s_m``."""
         self._check_road(number)
         lanes = self.network.roads[number].section(s_m).lanes
         if lane not in lanes and lane != 0:

@@ -133,7 +133,7 @@ def _track_scores(
     part: Slice,
     counts: Callable[[SeenObject], bool],
 ) -> dict[str, float | None]:
-    """Return the scores of tracks where every detection has one, and nothing else."""
+    """Return the scores of tracks; an empty dict without detections, or if one has no track."""
     if not found or any(each.track is None for each in found):
         return {}
     score = track_score(objects, found, part, counts)

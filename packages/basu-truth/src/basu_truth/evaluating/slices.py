@@ -1,4 +1,4 @@
-"""Slices of the truth: by class, distance, visible share and weather; what a slice leaves out counts neither way."""
+"""`slices`: divides the truth by class, distance, visible share and weather; scores ignore objects outside a slice."""
 
 from __future__ import annotations
 

@@ -204,7 +204,7 @@ def _limit(limit_mps: float) -> str:
 
 
 def record_frames(histories: list[History]) -> bytes:
-    """Return the frames of runs one after the other, runs beside each other by their time, compressed."""
+    """Return the compressed frames of several runs, with runs shown together at equal simulated times."""
     egos = [ego_rows(history.frames, run) for run, history in enumerate(histories)]
     others = [other_rows(history.others, run) for run, history in enumerate(histories)]
     starts = [np.searchsorted(h.others["tick"], np.arange(len(h.frames) + 1)) for h in histories]

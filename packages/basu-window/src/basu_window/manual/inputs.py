@@ -1,4 +1,4 @@
-"""Input of a person in one tick: keys, sticks and pedals, and the control that the vehicle gets from them.
+"""`Person`: turns the `Input` of a tick (keys, sticks, pedals) from an `InputSource` into the vehicle's control.
 
 The figures are those of CARLA's ``manual_control.py`` (0.9.16, ``_parse_vehicle_keys``) at its 20 frames a second, as
 rates, so that they hold for every step: throttle is there after half a second, brake after a quarter, the wheel turns

@@ -200,7 +200,7 @@ class AgentCalls:
         self.agent.bind_sensors({sensor.id: sensor.actor_id for sensor in sensors})
 
     def stop_hearing(self) -> None:
-        """Nothing to stop."""
+        """Do nothing: this class does not listen to sensors itself."""
 
     def step(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
         """The control that ``run_step`` answers with, for the frame that the world has reached.
@@ -246,7 +246,7 @@ class AgentCalls:
                 raise self._crashed("destroy", error) from error
 
     def _call(self, method: str, limit_s: float, call: Callable[[], T]) -> T:
-        """One call of the agent's code; what goes wrong in it is the agent's."""
+        """Call the agent's code within a time limit; raise AgentError for its failures and for overruns."""
         try:
             return call_within(limit_s, call)
         except OverrunError:

@@ -115,7 +115,7 @@ def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
 
 
 def _part(drives: Drives, campaign: Campaign, source: Path, scenario_files: Sequence[Path]) -> Part:
-    """One [[drives]] with all that it names.
+    """Return the part of the plan that one [[drives]] table describes.
 
     Raises:
         UserError: something is not there.

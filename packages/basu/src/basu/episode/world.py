@@ -167,7 +167,7 @@ def weather_called(name: str) -> carla.WeatherParameters:
 
 @contextlib.contextmanager
 def spawned_at_start(world: carla.World, route: Route, blueprint_id: str, role: str) -> Iterator[carla.Vehicle]:
-    """The vehicle above the first point of ``route``, with its brake on; destroyed afterwards.
+    """Spawn a vehicle above the first point of ``route`` with its brake on, and destroy it afterwards.
 
     Raises:
         UserError: there is no such vehicle, or the place is taken.

@@ -106,7 +106,7 @@ def stop_signs(history: History) -> tuple[Evidence, ...]:
 
 
 def _crossing(centre_s_m: NDArray[np.float64], line_s_m: float) -> int | None:
-    """The first frame in which the vehicle's middle is beyond the line, having been before it."""
+    """Return the first frame in which the vehicle's middle has crossed the line; None if it did not cross."""
     beyond = np.flatnonzero(centre_s_m > line_s_m)
     if len(beyond) == 0 or beyond[0] == 0:
         return None

@@ -1,4 +1,4 @@
-"""The bar that shows how far a run is and how well it goes."""
+"""Progress bars: `ProgressBar` for one run with its distance and score, `drives_bar` for commands with many drives."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class CaseResult:
 
     @cached_property
     def history(self) -> History:
-        """The record, frame by frame.
+        """Read the record of the case's drive, frame by frame.
 
         Raises:
             UserError: nothing was driven.

@@ -58,7 +58,7 @@ def came_about(played: Played, partners: Collection[str] | None = None) -> Findi
 
 
 def effect_felt(played: Played, at_least_mps: float = EFFECT_MPS) -> Finding:
-    """Whether the ego drove when the conflict began: for scenarios that disturb the ego and have no partner."""
+    """Find whether the ego drove when the conflict began; for scenarios that disturb the ego without a partner."""
     first = played.first_tick("conflict")
     if first is None:
         return Finding(False, "the conflict never began")

@@ -133,7 +133,7 @@ class Stage(Protocol):
         """Open a vehicle's door."""
 
     def close_door(self, name: str, door: Door) -> None:
-        """Close it."""
+        """Close a vehicle's door."""
 
     def set_weather(self, values: Mapping[str, float]) -> None:
         """Change fields of the weather; those not named stay."""

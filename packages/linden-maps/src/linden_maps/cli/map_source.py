@@ -1,4 +1,4 @@
-"""Maps that commands name, read: as OpenDRIVE, or as a server has them."""
+"""Reads the map that a command names: as OpenDRIVE (`opendrive_of`), or as a server loads it (`world_map_of`)."""
 
 from pathlib import Path
 

@@ -46,7 +46,7 @@ def ring_of(
     ways: list[Bounds],
     kerbs: list[tuple[int, ...]],
 ) -> tuple[int, ...]:
-    """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways whole.
+    """Return the nodes of a junction's area, counter-clockwise: the first candidate ring that contains all ways.
 
     First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone. Then come
     convex hulls: of the ends, of ends and kerbs, of the ways. ``entries`` lead into the junction, ``exits`` lead out of

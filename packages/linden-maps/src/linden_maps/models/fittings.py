@@ -73,7 +73,7 @@ def spoked_wheel(radius_m: float, width_m: float, spokes: int, tag: int) -> Mesh
 
 
 def hoop(radius_m: float, thickness_m: float, look: FaceLook) -> Mesh:
-    """Return a ring about the y axis: round, of ``thickness_m`` radius itself."""
+    """Return a ring about the y axis, made of a tube of radius ``thickness_m``."""
     rings = []
     for angle in np.arange(_SIDES + 1) * (math.tau / _SIDES):
         outwards = np.array([math.cos(angle), 0.0, math.sin(angle)])

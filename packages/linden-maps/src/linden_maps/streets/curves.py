@@ -72,7 +72,7 @@ def along(piece: Piece, s_m: float) -> Pose:
 
 
 def length(path: Path) -> float:
-    """Return the length in m."""
+    """Return the length of a path in m."""
     return math.fsum(piece.length_m for piece in path)
 
 

@@ -100,7 +100,7 @@ def join(meshes: "list[Mesh]") -> Mesh:
 
 
 def _as_bytes(meshes: "list[Mesh]") -> NDArray[np.uint8]:
-    """Return the bytes of all faces, one after the other: of records numpy would ask whether their kinds agree."""
+    """Return the bytes of all meshes' faces, concatenated; numpy would compare the types of records each time."""
     return np.concatenate(
         [np.zeros(0, np.uint8), *(np.ascontiguousarray(mesh.faces).view(np.uint8) for mesh in meshes)]
     )

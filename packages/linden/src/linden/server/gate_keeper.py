@@ -28,7 +28,7 @@ class GateKeeper(ABC):
         self._gates: dict[int, _Open] = {}  # by the vehicle that its agent drives
 
     def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> GatePorts:
-        """Listen for one agent on two ports of the system's choice; a gate of this vehicle is closed.
+        """Close the vehicle's old gate, and listen for one agent on two free ports.
 
         Connections are those of the process ``agent`` and all that it started; None: of all processes.
         """

@@ -96,7 +96,7 @@ class ActorTable:
         return self._records.get(actor_id)
 
     def get(self, actor_id: int) -> ActorRecord:
-        """Return the actor.
+        """Return the actor with an id.
 
         Raises:
             ActorRefusal: there is none of that id.

@@ -1,4 +1,4 @@
-"""Static scene of an episode: map objects and their collision boxes, layers, street lamps, and debug shapes of clients.
+"""`Scenery`, a map's fixed scene that episodes share, and `Surroundings`, the objects, lamps and shapes of one episode.
 
 Every map has its lights and signs and the scene that they are part of. Clients hide and show objects, switch lamps and
 draw debug shapes.
@@ -124,7 +124,7 @@ class Surroundings:
         self._change_layers(self._layers | MapLayer(layers & MapLayer.ALL))
 
     def unload_layers(self, layers: int) -> None:
-        """Let layers disappear, bits of MapLayer."""
+        """Hide the map layers of the bits of MapLayer in ``layers``."""
         self._change_layers(self._layers & ~MapLayer(layers & MapLayer.ALL))
 
     def _change_layers(self, layers: MapLayer) -> None:

@@ -110,7 +110,7 @@ class BenchmarksEnd:
         return answer
 
     def close(self) -> None:
-        """Let go of the socket."""
+        """Close the socket to the agent's process."""
         self._socket.close()
 
     def _read(self) -> None:

@@ -1,4 +1,4 @@
-"""The table at the end of a run on the console: three answers, scores, metrics, and the scenarios of its route."""
+"""`table`: a run's result as text for the console, with answers, scores, infractions, scenarios and metrics."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ NOT_REACHED = "not reached"
 
 
 def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
-    """Return a line for all of them, and one for each: when, which, the verdict, and why."""
+    """Return a line of counts for a route's scenarios, and a line for each: time, name, verdict, reason."""
     if not scenarios:
         return []
     reached = [row for row in scenarios if row["reached"]]

@@ -122,7 +122,7 @@ class Criterion(ABC):
 
     @abstractmethod
     def judge(self, played: Played) -> Judgement:
-        """Look through the record."""
+        """Return the judgement of a played case by this criterion, from the record alone."""
 
     def says(
         self,

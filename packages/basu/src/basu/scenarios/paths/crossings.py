@@ -119,7 +119,7 @@ def crossing(
 
 
 def meeting(path: Path, place: Place, junction: JunctionAhead, slack_m: float = 15.0) -> tuple[float, float] | None:
-    """Where a path first meets the ego's way in a junction: arc lengths along the path and along the ego's route."""
+    """Return where a path first meets the ego's in a junction: m along path and route; None if they do not meet."""
     route, shift_m = place.route, place.trigger_s_m
     low, high = np.searchsorted(route.s_m, [junction.from_m + shift_m - slack_m, junction.to_m + shift_m + slack_m])
     ego_m = route.points_m[low:high, :2]

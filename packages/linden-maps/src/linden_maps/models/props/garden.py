@@ -1,4 +1,4 @@
-"""Props of gardens and parks: trees, pots, tables, swings; each (length, width, height) in m at the origin."""
+"""Props of gardens and parks: tables, chairs, swings, fountains; each (length, width, height) in m at the origin."""
 
 import math
 

@@ -42,7 +42,10 @@ class _LineApproach(NamedTuple):
 def trigger_boxes(
     tables: Tables, links: LaneLinks, world_from_signals: list[Transform], places: list[list[LanePlace]]
 ) -> list[tuple[BoundingBox, ...]]:
-    """Return each signal's boxes, one an approach, local to its actor: x across the lanes where it stands square."""
+    """Return the trigger boxes of each signal in its actor's frame, one for each approach.
+
+    If the signal stands square to the lanes, x points across them.
+    """
     approaches: list[_LineApproach] = []
     ordered: list[LanePlace] = []
     for signal, own in enumerate(places):

@@ -141,7 +141,7 @@ def _report_wheels(v: Body, spec: Spec, w: Work) -> None:
 
 @part
 def _arm(v: Body, cosine: float, sine: float) -> tuple[float, float]:
-    """Return where the centre of mass lies from the origin, in the world's x and y, m; of the yaw's cosine and sine."""
+    """Return the vector (m) from origin to centre of mass along the world's x and y, by the yaw's cosine and sine."""
     x, y = v.centre_of_mass[0], v.centre_of_mass[1]
     return cosine * x - sine * y, sine * x + cosine * y
 

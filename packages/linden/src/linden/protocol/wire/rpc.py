@@ -105,7 +105,7 @@ class RpcConnection:
 
     @property
     def is_broken(self) -> bool:
-        """Whether nothing more can be understood of this peer."""
+        """Return whether the peer has sent bytes after which no message can be decoded."""
         return self._failure is not None
 
     def _take(self, data: bytes, calls: list[Call]) -> None:

@@ -121,7 +121,7 @@ class Frame:
 
     @property
     def parents(self) -> Records:
-        """New attachments, child and parent: ``layouts.PARENT``."""
+        """Return the records of new attachments, child and parent: ``layouts.PARENT``."""
         return self._records(PacketId.PARENTS)
 
     @property

@@ -75,5 +75,5 @@ class Lamps:
 
 
 def is_night(weather: WeatherParameters) -> bool:
-    """Return whether the sun is below the horizon; a weather left to the map (all of it negative) has it up."""
+    """Return whether the sun is below the horizon; if the map decides the weather (all values negative), it is day."""
     return weather.sun_altitude_angle < 0.0 <= weather.cloudiness

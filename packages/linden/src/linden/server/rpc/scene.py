@@ -112,7 +112,7 @@ def _no_textures(names: list[str]) -> str:
 
 @method("set_annotations_traverse_translucency")
 def set_annotations_traverse_translucency(context: Context, _enable: bool) -> None:  # noqa: FBT001 - the wire's order
-    """Say in the log why it changes nothing."""
+    """Warn in the log that this setting changes nothing, because no object of the scene is translucent."""
     context.warn_once(
         "set_annotations_traverse_translucency: nothing in linden's scene is translucent, so what annotations show is "
         "the same with it and without"

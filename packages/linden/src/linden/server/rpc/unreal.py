@@ -24,7 +24,7 @@ def get_gbuffer_token(context: Context, actor_id: U32, _buffer: U32) -> bytes:
 
 @method("enable_gbuffers")
 def enable_gbuffers(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
-    """Refuse to switch g-buffers on; off they are."""
+    """Refuse to enable g-buffers; accept a call that disables them."""
     check_sensor(context, actor_id)
     if enabled:
         raise Refusal(_NO_GBUFFERS)

@@ -31,7 +31,7 @@ MAX_TURN_IN_RAD = 0.6  # towards the path, however far off
 def steer_angle_rad(
     path: SampledPath, place: PathPosition, yaw_rad: float, speed_mps: float, body: VehicleGeometry, preview_s: float
 ) -> float:
-    """The front wheels' angle, positive to the right.
+    """Return the angle of the front wheels in rad that follows the path, positive to the right.
 
     Args:
         path: what to follow.

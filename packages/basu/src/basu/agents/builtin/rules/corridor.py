@@ -44,7 +44,7 @@ class Strip:
         self._path = path
 
     def leads_against(self, yaw_rad: float, least_rad: float) -> bool:
-        """Whether a heading differs from the strip's by more than ``least_rad`` all along."""
+        """Return whether a heading differs by more than ``least_rad`` from every heading of the strip."""
         low_rad, high_rad = min(self._headings_rad), max(self._headings_rad)
         off_rad = abs(math.remainder(yaw_rad - 0.5 * (low_rad + high_rad), math.tau))
         return off_rad - 0.5 * (high_rad - low_rad) > least_rad

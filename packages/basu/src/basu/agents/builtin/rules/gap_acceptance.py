@@ -69,7 +69,7 @@ class GapRule(NamedTuple):
     top_mps: float  # … up to this speed
 
     def needed_s(self, distance_m: float, speed_mps: float, waited_s: float) -> float:
-        """The least gap, in s; ``distance_m`` is what the rear bumper covers until it has left the crossing."""
+        """Return the least gap in s; after ``distance_m``, the rear bumper has left the crossing."""
         start_s = START_S if speed_mps < 1.0 else 0.0
         own_s = start_s + time_to_cover_s(distance_m, speed_mps, self.accel_mps2, self.top_mps)
         return own_s if waited_s > self.patience_s else max(self.critical_s, own_s + self.margin_s)

@@ -79,7 +79,7 @@ class StopSign:
         return not crossing(self._zone, ego, others, self._gap_s(rested_s))
 
     def _gap_s(self, rested_s: float) -> float:
-        """How long the crossing has to stay free, in s."""
+        """Return the time in s for which the crossing has to stay free."""
         if self._rule is not None:
             return self._rule.needed_s(self._way_m, 0.0, rested_s)
         return self._needed_gap_s if rested_s < IMPATIENCE_S else min(SHORT_GAP_S, self._needed_gap_s)

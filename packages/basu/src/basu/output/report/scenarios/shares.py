@@ -132,7 +132,7 @@ def shares_view(matrix: dict[str, Any]) -> Markup | None:
 
 
 def _score(agent: str, share: dict[str, Any]) -> dict[str, str]:
-    """One agent's shares in words."""
+    """Return the texts of an agent's card: its shares of crash cost, in words."""
     cost = share["share_of_cost"]
     others = ", ".join(f"{interval(share[key])} of {name}" for key, name in list(SHARES.items())[1:])
     part = percent_of(share["measured_of_cost"])

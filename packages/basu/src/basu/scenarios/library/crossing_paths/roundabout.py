@@ -92,7 +92,7 @@ class Roundabout(Scenario):
         return Meanwhile(EgoArrives(), *(DriveAlong(name, path, speed_mps, at_end="vanish") for name in self.names))
 
     def _meeting(self, name: str, number: int, way: Crossing) -> Behaviour:
-        """One of them comes to the ego's entry, so much after the one before."""
+        """Return the behaviour that brings one vehicle to the ego's entry, a set gap after the previous vehicle."""
         return ReachAtEgosArrival(
             name,
             way.path,

@@ -57,7 +57,7 @@ class CyclistAtRightTurn(Scenario):
 
     @cached_property
     def _meeting(self) -> tuple[float, float]:
-        """Where the ways cross: along the cyclist's, and along the route from its beginning."""
+        """Return where both paths cross: m along the cyclist's path, and m along the route."""
         route, junction = self.place.route, next_junction(self.place)
         behind = route.s_m >= self.place.trigger_s_m + junction.from_m - 1.0
         x_m, y_m = route.points_m[behind, 0], route.points_m[behind, 1]

@@ -34,7 +34,7 @@ class Lidar:
         self._angle_deg = 0.0
 
     def skip(self, interval_s: float) -> None:
-        """Turn on unheard."""
+        """Advance the rotation by ``interval_s`` without a measurement."""
         self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
 
     def measure(self, look: SensorLook) -> Sweep:
@@ -83,7 +83,7 @@ class SemanticLidar:
         self._angle_deg = 0.0
 
     def skip(self, interval_s: float) -> None:
-        """Turn on unheard."""
+        """Advance the rotation by ``interval_s`` without a measurement."""
         self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
 
     def measure(self, look: SensorLook) -> SemanticSweep:

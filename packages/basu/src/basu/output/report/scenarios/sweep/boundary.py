@@ -167,7 +167,7 @@ def _gains(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int, total
 
 
 def _log_chances(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int, total: int) -> NDArray[np.float64]:
-    """Return the logarithms (K,) of drawing at least so many failures, among so many cases, without any rule."""
+    """Return the log probability (K,) that each rule's cases, if chosen at random, hold at least ``hits`` failures."""
     from scipy.stats import hypergeom  # noqa: PLC0415 - 0.8 s, which a matrix without a sweep does without
 
     chances: NDArray[np.float64] = hypergeom.logsf(hits - 1, total, failed, drawn)

@@ -1,4 +1,4 @@
-"""The cases of one sampled scenario with one agent, as columns: each parameter that varied, and the verdict."""
+"""`Study`: the judged cases of one sampled scenario with one agent, as columns of varied parameters and verdicts."""
 
 from __future__ import annotations
 
