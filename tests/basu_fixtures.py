@@ -45,7 +45,7 @@ def _no_stand_ins() -> Iterator[None]:
     yield
     module = sys.modules.get("basu_leaderboard.replacement_modules")
     if module is not None:
-        module.step_back()
+        module.uninstall()
 
 
 @pytest.fixture(scope="session")

@@ -53,7 +53,7 @@ class World:
 @pytest.fixture(autouse=True)
 def host() -> Iterator[None]:
     """A host that has a world with a hero in it."""
-    replacement_modules.stand_in()
+    replacement_modules.install()
     CarlaDataProvider.set_world(World())
     CarlaDataProvider.register_actor(SimpleNamespace(id=7, attributes={"role_name": "hero"}))
     yield

@@ -26,14 +26,14 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]
 
 @pytest.mark.parametrize("name", sorted(replacement_modules.PROVIDED))
 def test_every_module_is_there_under_its_name(name: str) -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     module = importlib.import_module(name)
     assert replacement_modules.is_ours(name)
     assert module.__doc__
 
 
 def test_both_ways_to_import_a_module_find_it() -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     from leaderboard.autoagents import autonomous_agent  # noqa: PLC0415 - as TransFuser's agents do
     from leaderboard.autoagents.autonomous_agent import Track  # noqa: PLC0415 - as the public agents do
 
@@ -47,14 +47,14 @@ def test_without_standing_in_nothing_is_found() -> None:
 
 
 def test_what_is_installed_goes_before_ours(installed: Path) -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     module = importlib.import_module("leaderboard.autoagents.autonomous_agent")
     assert module.AutonomousAgent.theirs
     assert not replacement_modules.is_ours("leaderboard")
 
 
 def test_ours_never_fill_the_gaps_of_what_is_installed(installed: Path) -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     with pytest.raises(ModuleNotFoundError, match=r"^No module named 'leaderboard.utils'$"):
         importlib.import_module("leaderboard.utils.route_manipulation")
 
@@ -68,19 +68,19 @@ def test_ours_never_fill_the_gaps_of_what_is_installed(installed: Path) -> None:
     ],
 )
 def test_what_we_do_not_have_is_refused_with_the_folder_that_has_it(name: str, folder: str) -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     with pytest.raises(ModuleNotFoundError, match=folder) as refused:
         importlib.import_module(name)
     assert refused.value.name == name
 
 
 def test_other_names_are_none_of_our_business() -> None:
-    replacement_modules.stand_in()
+    replacement_modules.install()
     with pytest.raises(ModuleNotFoundError, match=r"^No module named 'leaderboards'$"):
         importlib.import_module("leaderboards")
 
 
 def test_standing_in_twice_is_once() -> None:
-    replacement_modules.stand_in()
-    replacement_modules.stand_in()
+    replacement_modules.install()
+    replacement_modules.install()
     assert sys.meta_path.count(replacement_modules._FINDER) == 1

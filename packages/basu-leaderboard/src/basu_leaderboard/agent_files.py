@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from basu_leaderboard.adapted_agent import LeaderboardAgent, adapted
 from basu_leaderboard.foreign_class import ENTRY_POINT, foreign_agent
-from basu_leaderboard.replacement_modules import stand_in
+from basu_leaderboard.replacement_modules import install
 
 if TYPE_CHECKING:
     from basu.agents.agent_files import AgentFile
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def prepare() -> None:
     """Let a file import ``leaderboard``, ``srunner`` and ``agents`` where they are not installed."""
-    stand_in()
+    install()
 
 
 def is_ours(file: AgentFile) -> bool:

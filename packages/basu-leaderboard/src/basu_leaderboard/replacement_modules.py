@@ -72,14 +72,14 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 _FINDER = _Finder()
 
 
-def stand_in() -> None:
-    """From now on, imports find our modules where there are no others; once is enough, twice does no harm."""
+def install() -> None:
+    """Make imports find our modules where there are no others. A second call changes nothing."""
     if _FINDER not in sys.meta_path:
         sys.meta_path.append(_FINDER)
 
 
-def step_back() -> None:
-    """Undo ``stand_in`` and forget our modules, as tests do."""
+def uninstall() -> None:
+    """Undo `install` and remove our modules from `sys.modules`, as tests do."""
     if _FINDER in sys.meta_path:
         sys.meta_path.remove(_FINDER)
     for name in [name for name in sys.modules if name.partition(".")[0] in WHERE and is_ours(name)]:

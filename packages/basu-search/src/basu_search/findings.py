@@ -12,7 +12,7 @@ from basu.files import read_json
 from basu_search.proposal import guards_in, weights_of
 from basu_search.rare_event import RareEvent, estimate
 from basu_search.rounds import space_filling
-from basu_search.strands import rounds_in, verdict_of
+from basu_search.search_states import rounds_in, verdict_of
 from basu_search.surrogate import Surrogate
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.campaigns.search_part import SearchPart, SearchPlace, StrandKey
+from basu.campaigns.search_part import SearchKey, SearchPart, SearchPlace
 from basu.campaigns.settings import Campaign, OtherTraffic, Seeds
 from basu.campaigns.shuffle import Shuffle
 from basu.conditions import WORLD
@@ -167,7 +167,7 @@ class CampaignPlan:
         if search is None:
             return None
         strand, within = search.place(place)
-        return SearchPlace(index, StrandKey(strand, agent), within)
+        return SearchPlace(index, SearchKey(strand, agent), within)
 
     def search_number(self, place: SearchPlace) -> int:
         """The number of the job at a place of a search."""

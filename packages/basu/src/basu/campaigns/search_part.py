@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SEARCH = "search"  # the folder of the searches' states
 
 
-class StrandKey(NamedTuple):
+class SearchKey(NamedTuple):
     """A search of a part: a case with a weather and a seed, and an agent."""
 
     strand: int
@@ -35,7 +35,7 @@ class SearchPlace(NamedTuple):
     """The place of a job in its search."""
 
     part: int
-    key: StrandKey
+    key: SearchKey
     place: int  # from 0
 
 
@@ -70,7 +70,7 @@ class SearchPart:
         return self.strands * sum(self.sizes)
 
     def place(self, number: int) -> tuple[int, int]:
-        """Strand and place of a condition; a round of all strands comes before the next round."""
+        """Search and place of a condition; a round of all strands comes before the next round."""
         first = 0
         for size in self.sizes:
             if number < self.strands * size:

@@ -1,4 +1,4 @@
-"""`Strands`: all searches of a campaign; a file for each holds its rounds, so that a resumed campaign repeats them.
+"""`SearchStates`: all searches of a campaign; each has a file of its rounds, so that a resumed campaign repeats them.
 
 A strand is one search: a case with a weather and a seed, for one agent. A file for each strand below ``search`` holds
 its rounds. A resumed campaign reads them, so it drives what it would have driven.
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.campaigns.plan import CampaignPlan
-    from basu.campaigns.search_part import SearchPart, StrandKey
+    from basu.campaigns.search_part import SearchKey, SearchPart
     from basu_search.rounds import Proposer
 
 OWN_FAULTS = frozenset({"simulator", "setup", "benchmark"})  # say nothing of the agent
@@ -46,7 +46,7 @@ def verdict_of(row: Mapping[str, Any]) -> Verdict:
     return Verdict(failed, float(row["severity"]), row["fault"] in OWN_FAULTS)
 
 
-class Strand:
+class SearchState:
     """One search."""
 
     def __init__(
@@ -105,13 +105,13 @@ class Strand:
         write_json(self.path, {**self._head, "rounds": rounds})
 
 
-class Strands:
+class SearchStates:
     """All searches of a campaign."""
 
     def __init__(self, plan: CampaignPlan, folder: Path) -> None:
         """Describe them; a strand's file is read when it is reached."""
         self._plan, self._folder = plan, folder / SEARCH
-        self._strands: dict[tuple[int, StrandKey], Strand] = {}
+        self._states: dict[tuple[int, SearchKey], SearchState] = {}
 
     def values(self, number: int) -> dict[str, float] | None:
         """What a job's search has chosen; None while it has not, and for a job of no search an empty dictionary.
@@ -120,7 +120,7 @@ class Strands:
             UserError: a file of a search cannot be read or written.
         """
         place = self._plan.search_place(number)
-        return {} if place is None else self._strand(place.part, place.key).point(place.place)
+        return {} if place is None else self._state(place.part, place.key).point(place.place)
 
     def count(self, row: Mapping[str, Any]) -> None:
         """Take in a row of the table.
@@ -130,22 +130,22 @@ class Strands:
         """
         place = self._plan.search_place(row["number"])
         if place is not None:
-            self._strand(place.part, place.key).verdicts[place.place] = verdict_of(row)
+            self._state(place.part, place.key).verdicts[place.place] = verdict_of(row)
 
-    def _strand(self, index: int, key: StrandKey) -> Strand:
-        if (index, key) not in self._strands:
+    def _state(self, index: int, key: SearchKey) -> SearchState:
+        if (index, key) not in self._states:
             part, agent = self._plan.parts[index], self._plan.agents[key.agent].name
             assert part.search is not None, "only a search has strands"
             head = {"part": index, "strand": key.strand, "agent": agent, **part.search.about(key.strand)}
             path = self._folder / f"{index}-{key.strand}-{agent}.json"
-            self._strands[index, key] = Strand(
+            self._states[index, key] = SearchState(
                 part.search,
                 key.strand,
                 path,
                 head,
                 lambda place: self._plan.search_number(SearchPlace(index, key, place)),
             )
-        return self._strands[index, key]
+        return self._states[index, key]
 
 
 def proposer_of(part: SearchPart, strand: int) -> Proposer:
