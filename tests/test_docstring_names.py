@@ -1,10 +1,14 @@
 """Names in docstrings exist: what a docstring puts between double backticks, or writes as a path of a module."""
 
 import ast
+import functools
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.slow  # reads all sources and runs none of them, so it measures no coverage
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(path for path in ROOT.glob("**/src/*/**/*.py") if ".venv" not in path.parts)
 NAME = re.compile(r"``([A-Za-z_]\w*(?:\.\w+)*)(?:\(\))?``")
@@ -50,6 +54,7 @@ def _docstrings(tree: ast.Module) -> Iterator[ast.Constant]:
             yield node.value
 
 
+@functools.cache
 def _all() -> tuple[dict[Path, str], set[str]]:
     """Return the docstrings of each file, and all words of code, names of files among them."""
     texts, words = {}, set()

@@ -204,6 +204,7 @@ def test_passengers_of_a_vehicle_that_ends_its_drive_are_stranded_and_the_other_
     assert "vehicle 1 ended before the service: the agent failed" in played.document["reasons"]
 
 
+@pytest.mark.slow
 def test_headway_control_spreads_vehicles_that_begin_together_over_30_seeds() -> None:
     spread = [
         [

@@ -36,6 +36,7 @@ def values(folder: Path, inside: str, *, file: str = "test.xosc") -> list[dict[s
     text = scenario(
         entities=vehicle("Other", "$model") + vehicle("Ego"),
         init=begins("Other", "$at", "$speed") + begins("Ego", 50, 10),
+        stop=0.5,  # each case is played once to its end
         parameters=PARAMETERS,
     )
     written(folder, text)

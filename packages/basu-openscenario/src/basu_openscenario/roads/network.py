@@ -31,6 +31,8 @@ SAMPLE_M = 2.0
 """Distance of the samples by which the nearest road is found, before it is refined."""
 OTHER_ROAD_M = 3.0
 """How much nearer a road must be than the present one, where no lane connects them."""
+NEXT_ROAD_M = 1e-3
+"""How much nearer a road must be than the present one, where a lane of the present road leads into it."""
 
 
 CANDIDATES_M = 60.0
@@ -195,15 +197,21 @@ class Network:
         close = np.array(tree.query_ball_point((x_m, y_m), reach_m), dtype=np.intp)
         best: tuple[float, Road, float, float] | None = None
         gaps = np.hypot(samples[close, 0] - x_m, samples[close, 1] - y_m)
-        for which, index in _nearest_of_each(np.searchsorted(starts, close, side="right") - 1, gaps, close):
+        candidates = _nearest_of_each(np.searchsorted(starts, close, side="right") - 1, gaps, close)
+        if near is not None:
+            candidates.sort(key=lambda candidate: numbers[candidate[0]] != near[0])  # the present road first
+        for which, index in candidates:
             road = self.roads[numbers[which]]
+            added_m = 0.0
+            if near is not None and road.number != near[0]:
+                if best is not None and best[0] <= NEXT_ROAD_M:
+                    break  # each further road has a larger score
+                added_m = NEXT_ROAD_M if self._follows(near[0], lane, road) else OTHER_ROAD_M
+                if best is not None and best[0] <= added_m:
+                    continue
             score, s_m, t_m = self._distance(road, float(samples[index, 2]), x_m, y_m, z_m)
-            if near is not None and road.number != near[0] and not self._follows(near[0], lane, road):
-                score += OTHER_ROAD_M
-            elif near is not None and road.number != near[0]:
-                score += 1e-3
-            if best is None or score < best[0] - 1e-9:
-                best = score, road, s_m, t_m
+            if best is None or score + added_m < best[0] - 1e-9:
+                best = score + added_m, road, s_m, t_m
         assert best is not None, "a network has a road"
         return best[1:]
 
