@@ -104,7 +104,19 @@ def exported(staged: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable
     @functools.cache
     def export(name: str) -> Path:
         folder = tmp_path_factory.mktemp("exports") / name
-        words = ["truth", "export", str(staged), "--format", name, "-o", str(folder), "--every", "1"]
+        words = [
+            "truth",
+            "export",
+            str(staged),
+            "--format",
+            name,
+            "-o",
+            str(folder),
+            "--every",
+            "1",
+            "--timeout",
+            "120",
+        ]
         assert main(words) == 0
         return folder
 

@@ -150,7 +150,8 @@ def test_the_frames_of_nuscenes_lead_a_box_into_its_picture(exported: Exports) -
 
 def test_an_export_has_the_same_bytes_again(exported: Exports, staged: Path, tmp_path: Path) -> None:
     again = tmp_path / "again"
-    assert main(["truth", "export", str(staged), "--format", "coco", "-o", str(again), "--every", "1"]) == 0
+    words = ["--format", "coco", "-o", str(again), "--every", "1", "--timeout", "120"]
+    assert main(["truth", "export", str(staged), *words]) == 0
     files = sorted(path.relative_to(again) for path in again.rglob("*") if path.is_file())
     assert files == sorted(p.relative_to(exported("coco")) for p in exported("coco").rglob("*") if p.is_file())
     for name in files:
@@ -186,13 +187,24 @@ def test_runs_that_cannot_be_exported_are_named(
 def test_a_run_is_scored_without_an_export(exported: Exports, staged: Path, tmp_path: Path) -> None:
     detections = written(tmp_path / "d.json", coco_results(read_truth(exported("coco"))))
     target = tmp_path / "scores.json"
-    command = ["truth", "evaluate", str(staged), "--detections", str(detections), "--every", "1", "--json", str(target)]
-    assert main(command) == 0
+    words = ["--detections", str(detections), "--every", "1", "--json", str(target), "--timeout", "120"]
+    assert main(["truth", "evaluate", str(staged), *words]) == 0
     assert json.loads(target.read_text())["rows"][0]["scores"]["AP"] == 1.0
 
 
 def test_a_run_is_exported_in_another_weather(staged: Path, tmp_path: Path) -> None:
-    words = ["--format", "coco", "-o", str(tmp_path / "night"), "--every", "4", "--weather", "ClearNight"]
+    words = [
+        "--format",
+        "coco",
+        "-o",
+        str(tmp_path / "night"),
+        "--every",
+        "4",
+        "--weather",
+        "ClearNight",
+        "--timeout",
+        "120",
+    ]
     assert main(["truth", "export", str(staged), *words]) == 0
     (frame,) = read_truth(tmp_path / "night").frames
     assert frame.weather["sun_altitude_angle"] < 0.0
