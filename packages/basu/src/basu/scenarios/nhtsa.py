@@ -27,7 +27,7 @@ class Group(enum.Enum):
     OPPOSITE_DIRECTION = "opposite direction"
     REAR_END = "rear-end"
     CROSSING_PATHS = "crossing paths"
-    SHUTTLE = "shuttle"  # what a shuttle meets besides; not in NHTSA's typology, weighs nothing in its shares
+    SHUTTLE = "shuttle"  # what a shuttle meets besides; outside the nine groups, weighs nothing in their shares
 
 
 class Burden(NamedTuple):
@@ -130,9 +130,9 @@ STANDS_FOR: dict[str, tuple[int, ...]] = {
     "ControlLoss": (3,),
     "SlipperyStop": (2,),
     "BendDeparture": (7,),
-    "CrossWind": (7,),
+    "CrossWind": (6, 7),
     "DeerAtDusk": (10,),
-    "DogOnTheRoad": (10,),
+    "DogOnTheRoad": (9, 10),
     "OccludedChild": (12,),
     "PedestrianCrossing": (12,),
     "PedestrianTurn": (11,),
@@ -153,7 +153,7 @@ STANDS_FOR: dict[str, tuple[int, ...]] = {
     "StrayingOncoming": (21,),
     "FollowLeadingVehicle": (24, 26),
     "FollowLeadingVehicleWithObstacle": (25,),
-    "LeadVehicleBrakes": (25,),
+    "LeadVehicleBrakes": (22, 25),
     "LeadVehicleSwerves": (26,),
     "StaticObject": (26,),
     "StopAndGo": (23, 25),
@@ -161,7 +161,7 @@ STANDS_FOR: dict[str, tuple[int, ...]] = {
     "EgoTurnsLeft": (27, 29),
     "LeftTurnAcrossPath": (27, 29),
     "RedLightRunner": (4,),
-    "RightTurnIntoPath": (31,),
+    "RightTurnIntoPath": (28, 31),
     "Roundabout": (31,),
     "StopSignRunner": (5,),
     "StraightCrossingPaths": (30,),
