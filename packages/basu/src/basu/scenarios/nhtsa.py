@@ -50,6 +50,18 @@ BURDENS: dict[Group, Burden] = {
     Group.REAR_END: Burden(1_245, 1_709_717, 106_515, 11_646),
     Group.CROSSING_PATHS: Burden(3_972, 1_131_273, 135_406, 14_805),
 }
+PER_1E9_MILES: dict[Group, int] = {  # crashes for 10^9 vehicle miles, another column of the table
+    Group.CONTROL_LOSS: 174,
+    Group.ROAD_DEPARTURE: 202,
+    Group.ANIMAL: 110,
+    Group.PEDESTRIAN: 26,
+    Group.PEDALCYCLIST: 18,
+    Group.LANE_CHANGE: 238,
+    Group.OPPOSITE_DIRECTION: 37,
+    Group.REAR_END: 632,
+    Group.CROSSING_PATHS: 418,
+}
+PRINTED_PER_1E9_MILES = 1_855  # as the table has the sum
 PRINTED_TOTAL = Burden(24_534, 5_020_062, 564_073, 61_674)  # as the table has it; sums differ by rounding
 
 
