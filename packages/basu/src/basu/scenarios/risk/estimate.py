@@ -13,7 +13,8 @@ stand for. Each case ends in one way:
 
 An interval has 95 % of 4,000 draws of everything uncertain: the probabilities (beta distributions with Jeffreys' prior,
 one for each scenario), the conflicts behind a reported crash or the counted ones, the injury curves, and the part of
-the unknown cases that are crashes (0 to 1, one for the whole agent).
+the unknown cases that are crashes (0 to 1, one for the whole agent). Where no case of a scenario had an impact, the
+draws suppose impacts at the shuttle's highest speed.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from basu.scenarios.shares import CountedCase
 
 DRAWS, SEED = 4_000, 1_855
+SUPPOSED_MPS = 6.7  # of the impacts that draws have in a scenario without one: as fast as the shuttle drives
 KINDS = ("crashes", "severe injuries on foot", "deaths of occupants", "falls of a standing passenger", "disengagements")
 CRASH, DISENGAGEMENT, PASSED, UNKNOWN = "crash", "disengagement", "passed", "unknown"
 LEFT_OUT = (Verdict.SIMULATOR_FAULT, Verdict.SETUP_FAULT, Verdict.BENCHMARK_FAULT, Verdict.INTERRUPTED)
@@ -107,9 +109,8 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
                 values[kind] += meets * weight * float(part[0])
             for kind, part in _parts(of, chance, rng).items():
                 draws[kind] += drawn_meets * weight * part
-    ends = {kind: np.quantile(draws[kind], [0.025, 0.975]) for kind in KINDS}
     return Risk(
-        rates={kind: Interval(values[kind], float(ends[kind][0]), float(ends[kind][1])) for kind in KINDS},
+        rates={kind: _interval(values[kind], draws[kind]) for kind in KINDS},
         groups=tuple(
             GroupRisk(group, encounters(group, counted), reported_crashes(group), len(cases), _ends(cases))
             for group, cases in measured.items()
@@ -117,6 +118,12 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
         unmeasured=tuple(group for group in PER_1E9_MILES if group not in measured),
         left_out=len(every) - len(known),
     )
+
+
+def _interval(value: float, draws: NDArray[np.float64]) -> Interval:
+    """Return a rate with 95 % of its draws; from 0 on where nothing happened (Brown, Cai, DasGupta 2001, section 4.1)."""
+    low, high = np.quantile(draws, [0.025, 0.975])
+    return Interval(value, 0.0 if value == 0.0 else float(low), float(high))
 
 
 class _Chance(NamedTuple):
@@ -160,10 +167,12 @@ def _parts(
         return rng.beta(number + 0.5, count - number + 0.5, size)
 
     crash = np.minimum(1.0, share(ends[CRASH]) + chance.unknown * (ends[UNKNOWN] / count))
-    on_foot, deaths = np.zeros(size), np.zeros(size)
+    on_foot: NDArray[np.float64] = np.zeros(size)
+    deaths: NDArray[np.float64] = np.zeros(size)
     hits = [case for case in cases if case.impact_mps is not None]
-    for case in hits:
-        hurt = severe(case.impact_mps or 0.0, case.partner, chance.curves) / len(hits)
+    supposed = [cases[0]._replace(impact_mps=SUPPOSED_MPS)] if rng is not None and not hits else []
+    for case in hits or supposed:
+        hurt = severe(case.impact_mps or 0.0, case.partner, chance.curves) / len(hits or supposed)
         if case.partner in (Partner.WALKER, Partner.CYCLIST):
             on_foot = on_foot + hurt
         else:

@@ -1,7 +1,7 @@
 """The risk of a severe injury by the speed of an impact, from published curves, with brackets of their parameters.
 
-- *Pedestrian, severe injury* (AIS 4 and more): Tefft 2013 (Accident Analysis and Prevention 50, 871-878) has 10, 25, 50,
-  75 and 90 % at 16, 23, 31, 39 and 46 mph. A logistic curve through 10 and 50 % is within 1.5 % of the others. The
+- *Pedestrian, severe injury* (AIS 4 and more): Tefft 2013 (Accident Analysis and Prevention 50, 871-878) has 10, 25,
+  50, 75 and 90 % at 16, 23, 31, 39 and 46 mph. A logistic curve through 10 and 50 % is within 1.5 % of the others. The
   figures are those of his abstract. The bracket of the middle, 3 mph to each side, is an assumption of this project.
 - *Cyclist*: the pedestrian's curve, an assumption of this project; cyclists are hurt less at a given speed.
 - *Occupant of a vehicle, death*: Joksch 1993 (Accident Analysis and Prevention 25, 103-104), (change of speed / 71
