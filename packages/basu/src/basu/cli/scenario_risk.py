@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from basu.output.report.scenarios.matrix_documents import read_matrix
-from basu.output.report.scenarios.risk_report import PAGE_FILE, risks_of, risk_text, write_risks
+from basu.output.report.scenarios.risk_report import PAGE_FILE, risk_text, risks_of, write_risks
 from basu.scenarios.risk.exposure import read_exposure
 
 

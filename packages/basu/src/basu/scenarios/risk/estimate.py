@@ -11,16 +11,17 @@ stand for. Each case ends in one way:
 - *unknown*: the drive was completed and the conflict did not come about. Each such case may be a crash, so it widens
   the interval by all of itself.
 
-An interval has 95 % of 4,000 draws of everything uncertain: the probabilities (beta distributions with Jeffreys' prior,
-one for each scenario), the conflicts behind a reported crash or the counted ones, the injury curves, and the part of
-the unknown cases that are crashes (0 to 1, one for the whole agent). Where no case of a scenario had an impact, the
-draws suppose impacts at the shuttle's highest speed.
+An interval has the draws of everything uncertain: the conflicts behind a reported crash or the counted ones, the injury
+curves, and the part of the unknown cases that are crashes (0 to 1, one for the whole agent). The probability of an end
+is that of Clopper and Pearson at the effective number of cases, as in `basu.intervals.weighted`: the low end of the
+interval has draws of the beta distribution of its low end, the high end those of the high end. Where no case had an
+impact, the draws suppose impacts at the shuttle's highest speed.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from basu.metrics.passengers.balance import FREE_MPS2, SPREAD, share_that_falls
 from basu.records.partners import Partner
 from basu.scenarios.nhtsa import PER_1E9_MILES, Group
 from basu.scenarios.risk.exposure import REPORTED, Exposure, drawn_encounters, encounters, reported_crashes
-from basu.scenarios.risk.injuries import Curves, drawn, middle, severe
+from basu.scenarios.risk.injuries import ON_FOOT, Curves, drawn_curves, middle, severe
 from basu.scenarios.shares import scenario_weights
 from basu.scenarios.verdict import Verdict
 
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
     from basu.scenarios.shares import CountedCase
 
+Draws: TypeAlias = "NDArray[np.float64]"  # (N,)
 DRAWS, SEED = 4_000, 1_855
 SUPPOSED_MPS = 6.7  # of the impacts that draws have in a scenario without one: as fast as the shuttle drives
 KINDS = ("crashes", "severe injuries on foot", "deaths of occupants", "falls of a standing passenger", "disengagements")
@@ -99,18 +101,24 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
     measured = {group: cases for group, cases in by_group.items() if cases}
     rng = np.random.default_rng(SEED)
     reported = rng.gamma(REPORTED + 0.5, size=DRAWS)
-    chance = _Chance(drawn(DRAWS, rng), rng.uniform(*FREE_MPS2, DRAWS), rng.uniform(*SPREAD, DRAWS), rng.random(DRAWS))
-    fixed = _fixed()
-    values, draws = dict.fromkeys(KINDS, 0.0), {kind: np.zeros(DRAWS) for kind in KINDS}
-    for group, cases in measured.items():
-        meets, drawn_meets = encounters(group, counted), drawn_encounters(group, counted, reported, rng)
-        for weight, of in _scenarios(group, cases):
-            for kind, part in _parts(of, fixed, None).items():
-                values[kind] += meets * weight * float(part[0])
-            for kind, part in _parts(of, chance, rng).items():
-                draws[kind] += drawn_meets * weight * part
+    met = [
+        _Met(weight * encounters(group, counted), weight * drawn, of)
+        for group, cases in measured.items()
+        for drawn in [drawn_encounters(group, counted, reported, rng)]
+        for weight, of in _scenarios(group, cases)
+    ]
+    chance = _Chance(drawn_curves(DRAWS, rng), rng.uniform(*FREE_MPS2, DRAWS), rng.uniform(*SPREAD, DRAWS))
+    on_foot = [each for each in met if each.cases[0].partner in ON_FOOT]
+    others = [each for each in met if each.cases[0].partner not in ON_FOOT]
+    rates = (
+        _rate(met, CRASH, rng),
+        _rate(on_foot, CRASH, rng, chance.curves),
+        _rate(others, CRASH, rng, chance.curves),
+        _falls(met, chance),
+        _rate(met, DISENGAGEMENT, rng),
+    )
     return Risk(
-        rates={kind: _interval(values[kind], draws[kind]) for kind in KINDS},
+        rates=dict(zip(KINDS, rates, strict=True)),
         groups=tuple(
             GroupRisk(group, encounters(group, counted), reported_crashes(group), len(cases), _ends(cases))
             for group, cases in measured.items()
@@ -120,24 +128,75 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
     )
 
 
-def _interval(value: float, draws: NDArray[np.float64]) -> Interval:
-    """Return a rate with 95 % of its draws; from 0 on where nothing happened (Brown, Cai, DasGupta 2001, section 4.1)."""
-    low, high = np.quantile(draws, [0.025, 0.975])
-    return Interval(value, 0.0 if value == 0.0 else float(low), float(high))
+class _Met(NamedTuple):
+    """A scenario that is met in traffic."""
+
+    conflicts: float  # for a million miles
+    drawn: Draws  # of them
+    cases: Sequence[PlayedCase]
+
+    def share(self, end: str) -> float:
+        """Return the part of its cases with an end."""
+        return sum(case.end == end for case in self.cases) / len(self.cases)
 
 
 class _Chance(NamedTuple):
     """Draws (N,) of what all scenarios share."""
 
     curves: Curves
-    medians_mps2: NDArray[np.float64]
-    spreads: NDArray[np.float64]
-    unknown: NDArray[np.float64]  # part of the unknown cases that are crashes
+    medians_mps2: Draws
+    spreads: Draws
 
 
-def _fixed() -> _Chance:
-    """Return the middle of everything; an unknown case counts as no crash there, and the interval shows it."""
-    return _Chance(middle(), np.array([np.sqrt(np.prod(FREE_MPS2))]), np.array([np.mean(SPREAD)]), np.zeros(1))
+def _rate(met: Sequence[_Met], end: str, rng: np.random.Generator, curves: Curves | None = None) -> Interval:
+    """Return how often cases end so for a million miles, or how often that injures, by ``curves``."""
+    conflicts = sum(each.conflicts for each in met)
+    if not conflicts > 0.0:
+        return Interval(0.0, 0.0, 0.0, 0)
+    total = np.sum([each.drawn for each in met], axis=0)
+    trials = conflicts**2 / sum(each.conflicts**2 / len(each.cases) for each in met)
+    share = min(1.0, sum(each.conflicts * each.share(end) for each in met) / conflicts)
+    hits = min(trials, trials * share)
+    low = rng.beta(hits, trials - hits + 1.0, DRAWS) if hits > 0.0 else np.zeros(DRAWS)
+    high = rng.beta(hits + 1.0, trials - hits, DRAWS) if hits < trials else np.ones(DRAWS)
+    if end == CRASH:
+        unknown = sum(each.conflicts * each.share(UNKNOWN) for each in met) / conflicts
+        high = np.minimum(1.0, high + unknown * rng.random(DRAWS))
+    hurt = np.ones(1) if curves is None else _hurt(met, middle())
+    drawn_hurt = np.ones(DRAWS) if curves is None else _hurt(met, curves)
+    return Interval(
+        conflicts * share * float(hurt[0]),
+        float(np.quantile(total * low * drawn_hurt, 0.025)),
+        float(np.quantile(total * high * drawn_hurt, 0.975)),
+    )
+
+
+def _hurt(met: Sequence[_Met], curves: Curves) -> Draws:
+    """Return the mean risk (N,) of a severe injury in a crash; in supposed crashes where there was none."""
+    hits = [
+        (each.conflicts / len(each.cases), case.impact_mps, case.partner)
+        for each in met
+        for case in each.cases
+        if case.impact_mps is not None
+    ]
+    hits = hits or [(each.conflicts, SUPPOSED_MPS, each.cases[0].partner) for each in met]
+    found: Draws = np.zeros(len(curves.change))
+    for weight, speed_mps, partner in hits:
+        found = found + weight * severe(speed_mps, partner, curves)
+    return found / sum(weight for weight, _, _ in hits)
+
+
+def _falls(met: Sequence[_Met], chance: _Chance) -> Interval:
+    """Return the falls of one standing passenger for a million miles."""
+    medians, spreads = np.array([np.sqrt(np.prod(FREE_MPS2))]), np.array([np.mean(SPREAD)])
+    value = 0.0
+    draws: Draws = np.zeros(DRAWS)
+    for each in met:
+        for case in each.cases:
+            value += each.conflicts / len(each.cases) * float(share_that_falls(case.braking_mps2, medians, spreads)[0])
+            fallen = share_that_falls(case.braking_mps2, chance.medians_mps2, chance.spreads)
+            draws = draws + each.drawn / len(each.cases) * fallen
+    return Interval(value, *(float(end) for end in np.quantile(draws, [0.025, 0.975])))
 
 
 def _ends(cases: Sequence[PlayedCase]) -> dict[str, int]:
@@ -152,33 +211,3 @@ def _scenarios(group: Group, cases: Sequence[PlayedCase]) -> list[tuple[float, l
     weights = scenario_weights(group, [case.counted for case in cases])
     total = sum(weights.values())
     return [(weights[name] / total, of) for name, of in found.items()]
-
-
-def _parts(
-    cases: Sequence[PlayedCase], chance: _Chance, rng: np.random.Generator | None
-) -> dict[str, NDArray[np.float64]]:
-    """Return the probability (N,) of each kind in one conflict of a scenario; without ``rng`` that of the counts."""
-    ends, count = _ends(cases), len(cases)
-    size = len(chance.unknown)
-
-    def share(number: int) -> NDArray[np.float64]:
-        if rng is None:
-            return np.full(size, number / count)
-        return rng.beta(number + 0.5, count - number + 0.5, size)
-
-    crash = np.minimum(1.0, share(ends[CRASH]) + chance.unknown * (ends[UNKNOWN] / count))
-    on_foot: NDArray[np.float64] = np.zeros(size)
-    deaths: NDArray[np.float64] = np.zeros(size)
-    hits = [case for case in cases if case.impact_mps is not None]
-    supposed = [cases[0]._replace(impact_mps=SUPPOSED_MPS)] if rng is not None and not hits else []
-    for case in hits or supposed:
-        hurt = severe(case.impact_mps or 0.0, case.partner, chance.curves) / len(hits or supposed)
-        if case.partner in (Partner.WALKER, Partner.CYCLIST):
-            on_foot = on_foot + hurt
-        else:
-            deaths = deaths + hurt
-    falls = sum(
-        (share_that_falls(case.braking_mps2, chance.medians_mps2, chance.spreads) / count for case in cases),
-        np.zeros(size),
-    )
-    return dict(zip(KINDS, (crash, crash * on_foot, crash * deaths, falls, share(ends[DISENGAGEMENT])), strict=True))

@@ -42,7 +42,7 @@ def middle() -> Curves:
     return Curves(np.array([sum(MIDDLE_MPH) / 2.0]), np.array([sum(CHANGE) / 2.0]))
 
 
-def drawn(count: int, rng: np.random.Generator) -> Curves:
+def drawn_curves(count: int, rng: np.random.Generator) -> Curves:
     """Return draws of the curves."""
     return Curves(rng.uniform(*MIDDLE_MPH, count), rng.uniform(*CHANGE, count))
 
