@@ -35,8 +35,8 @@ def answer_of(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer
     """Return what a case's ``result.json`` says about a requirement.
 
     A case shows nothing if its conflict did not come about. A check that holds in a drive that was not completed shows
-    nothing either: a vehicle that stands for ever touches no actor. A check that holds off the road is broken: a vehicle
-    on the pavement touches no actor in its lane.
+    nothing either: a vehicle that stands for ever touches no actor. A check that holds off the road is broken: on the
+    pavement a vehicle touches no actor of its lane.
     """
     case = result["case"]
     verdict = Verdict(case["verdict"])
