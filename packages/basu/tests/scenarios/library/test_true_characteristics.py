@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from basu.scenarios.cases import open_library
-from basu.scenarios.characteristics import Violation, characteristics_of
+from basu.scenarios.characteristics import Surface, Violation, characteristics_of
 from basu.scenarios.paths import Path
 from basu.scenarios.road_there import RoadThere, road_there
 from basu.scenarios.scenario import Scenario
@@ -85,6 +85,7 @@ def test_a_case_states_what_the_map_and_its_rehearsal_show(laid: Laid, name: str
     assert said[:2] in [each[:2] for each in there], there
     assert said.alignment in [each.alignment for each in there], there
     assert said.highway in [each.highway for each in there], there
+    assert (stated.surface is Surface.SLIPPERY) == any(each.what == "friction" for each in calm.rehearsal.commands)
     limit_mps = float(route.speed_limit_mps[min(int(calm.s_m), len(route.s_m) - 1)])
     fastest_mps = max(
         (float(np.nanmax(t[:, 3])) for n, t in calm.rehearsal.trails.items() if n != EGO and np.isfinite(t).any()),
