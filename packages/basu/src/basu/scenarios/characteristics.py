@@ -151,7 +151,7 @@ _AT_STOP_SIGN = {"junction": "intersection", "control": "stop-sign"}
 OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ from the defaults
     "ControlLoss": {"surface": "slippery", "partner": "none"},
     "SlipperyStop": {"surface": "slippery", "junction": "approach", "control": "stop-sign", "partner": "sign"},
-    "BendDeparture": {"alignment": "curve", "partner": "none"},
+    "BendDeparture": {"surface": "slippery", "alignment": "curve", "partner": "none"},
     "CrossWind": {"partner": "none"},
     "SteeringDeviation": {"partner": "none"},
     "RunningForTheShuttle": {"partner": "walker"},
