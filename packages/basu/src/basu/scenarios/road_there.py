@@ -87,7 +87,7 @@ def _kind(route: Route, begin_m: float, end_m: float) -> str:
 
 
 def _control(route: Route, begin_m: float, end_m: float) -> str:
-    """Return the control whose line is at a junction."""
+    """Return the control with its line at a junction."""
     at_line = {control.kind for control in route.controls if begin_m - LINE_M <= control.s_m <= end_m}
     return next((word for kind, word in _CONTROLS.items() if kind in at_line), "none")
 

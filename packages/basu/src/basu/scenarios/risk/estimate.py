@@ -5,17 +5,17 @@ ends so. A group's probability is that of its scenarios, weighted by the frequen
 stand for. Each case ends in one way:
 
 - *crash*: the ego touched something.
-- *disengagement*: no contact, and a person would have had to take over: the drive was not completed, the agent broke
+- *disengagement*: no contact, and a person would have had to take over. The drive was not completed, the agent broke
   down, or the case was failed. A driver that stands still or creeps ends here.
 - *passed*.
 - *unknown*: the drive was completed and the conflict did not come about. Each such case may be a crash, so it widens
   the interval by all of itself.
 
-An interval has the draws of everything uncertain: the conflicts behind a reported crash or the counted ones, the injury
+An interval has draws of everything uncertain. These are the conflicts (behind a reported crash, or counted), the injury
 curves, and the part of the unknown cases that are crashes (0 to 1, one for the whole agent). The probability of an end
-is that of Clopper and Pearson at the effective number of cases, as in `basu.intervals.weighted`: the low end of the
-interval has draws of the beta distribution of its low end, the high end those of the high end. Where no case had an
-impact, the draws suppose impacts at the shuttle's highest speed.
+is that of Clopper and Pearson at the effective number of cases, as in `basu.intervals.weighted`. The ends of the
+interval have draws of the beta distributions of its two ends. Where no case had an impact, the draws suppose impacts
+at the shuttle's highest speed.
 """
 
 from __future__ import annotations

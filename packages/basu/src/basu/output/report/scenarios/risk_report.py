@@ -26,7 +26,7 @@ ASSUMPTIONS = (
     "Table 1.1 holds for light vehicles on all roads of the United States; a shuttle's streets are others.",
     "A crash is any contact. Human drivers have 69 contacts in 830 conflicts by the same study, 8.3 %.",
     "Injuries are those of the first person hit, or of one occupant; the curves are in `basu.scenarios.risk.injuries`.",
-    "A fall is that of one standing passenger who holds nothing; losing balance is not yet an injury.",
+    "A fall is that of one standing passenger without a hold; losing balance is not yet an injury.",
     f"Intervals have 95 % of {DRAWS:,} draws of probabilities, conflicts, curves and unknown cases.",
     "The cases were chosen by hand, and no interval covers that.",
 )
