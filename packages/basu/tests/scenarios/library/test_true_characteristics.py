@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from basu.scenarios.cases import open_library
 from basu.scenarios.characteristics import Surface, Violation, characteristics_of
@@ -61,7 +62,7 @@ def met(scenario: Scenario, driver: Driver) -> Met:
     return Met(way.nearest(*trail[at, :2]).s_m, played, name, enters)
 
 
-def _partners(played: Rehearsal, named: Collection[str] | None) -> dict[str, np.ndarray]:
+def _partners(played: Rehearsal, named: Collection[str] | None) -> dict[str, NDArray[np.float64]]:
     """The named actors; else those that move, or all if none does."""
     others = {name: trail for name, trail in played.trails.items() if name != EGO}
     if named is not None:
@@ -69,7 +70,7 @@ def _partners(played: Rehearsal, named: Collection[str] | None) -> dict[str, np.
     return {name: trail for name, trail in others.items() if _moved_m(trail) >= MOVED_M} or others
 
 
-def _moved_m(trail: np.ndarray) -> float:
+def _moved_m(trail: NDArray[np.float64]) -> float:
     there = trail[np.isfinite(trail[:, 0])]
     return float(np.hypot(*(there[:, :2] - there[0, :2]).T).max()) if len(there) else 0.0
 
