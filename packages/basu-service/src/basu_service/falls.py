@@ -21,20 +21,18 @@ jerk beyond the filter.
 
 from __future__ import annotations
 
-from statistics import NormalDist
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from basu.metrics.passengers.balance import FREE_MPS2, HOLDING_MPS2, SPREAD, STANDARD, share_that_falls
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-FREE_MPS2, HOLDING_MPS2 = (1.62, 2.5), (2.26, 2.65)  # the brackets of the medians
-SPREAD = (0.15, 0.35)  # bracket of the standard deviation of the logarithm
 DRAWS, SEED = 2000, 20_200_220
-STANDARD = NormalDist()
 
 
 class Stander(NamedTuple):
@@ -79,18 +77,13 @@ def of_hundred(strongest_mps2: float, *, holds_on: bool) -> Falls:
     """Return how many of 100 standing passengers lose balance at one push, persons drawn anew in each draw."""
     medians, spreads = _draws()
     low, high = HOLDING_MPS2 if holds_on else FREE_MPS2
-    middle = _share(strongest_mps2, np.array([np.sqrt(low * high)]), np.array([0.5 * (SPREAD[0] + SPREAD[1])]))[0]
-    shares = _share(strongest_mps2, medians[:, int(holds_on)], spreads)
+    middle = share_that_falls(
+        strongest_mps2, np.array([np.sqrt(low * high)]), np.array([0.5 * (SPREAD[0] + SPREAD[1])])
+    )[0]
+    shares = share_that_falls(strongest_mps2, medians[:, int(holds_on)], spreads)
     counts = np.random.default_rng(SEED + 1).binomial(100, shares)
     ends = np.quantile(counts, [0.025, 0.975])
     return Falls(100, 100.0 * float(middle), float(ends[0]), float(ends[1]))
-
-
-def _share(felt_mps2: float, medians_mps2: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the share of persons with a limit below what is felt, for each draw."""
-    if felt_mps2 <= 0.0:
-        return np.zeros(len(medians_mps2))
-    return np.array([STANDARD.cdf(float(each)) for each in (np.log(felt_mps2) - np.log(medians_mps2)) / spreads])
 
 
 def _draws() -> tuple[NDArray[np.float64], NDArray[np.float64]]:

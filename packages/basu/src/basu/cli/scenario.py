@@ -1,4 +1,4 @@
-"""Arguments of ``basu scenario list``, ``run``, ``draw``, ``export`` and ``report``."""
+"""Arguments of ``basu scenario list``, ``run``, ``draw``, ``export``, ``report`` and ``risk``."""
 
 from __future__ import annotations
 
@@ -26,6 +26,23 @@ def add_scenario(scenario: argparse.ArgumentParser) -> None:
     report.add_argument("folder", type=Path, metavar="FOLDER", help="of a run, such as scenario-runs/latest")
     report.add_argument("--junit", type=Path, metavar="FILE", help="write the JUnit XML there as well")
     report.set_defaults(command=later("basu.cli.scenario_report:run"))
+    _add_risk(actions.add_parser("risk", help="expected crashes and injuries for a million miles"))
+
+
+def _add_risk(risk: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu scenario risk``."""
+    risk.description = (
+        "Show the crashes, injuries, falls and disengagements that the agents of a run are expected to have in a "
+        "million miles, with intervals, and write risk.html and risk.json beside the run's page."
+    )
+    risk.add_argument("folder", type=Path, metavar="FOLDER", help="of a run, such as scenario-runs/latest")
+    risk.add_argument(
+        "--encounters",
+        type=Path,
+        metavar="FILE",
+        help="a TOML file with counted conflicts: events and miles by group (default: by table 1.1 of the thesis)",
+    )
+    risk.set_defaults(command=later("basu.cli.scenario_risk:run"))
 
 
 def _add_list(command: argparse.ArgumentParser) -> None:

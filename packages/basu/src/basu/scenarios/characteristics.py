@@ -1,9 +1,11 @@
 """Characteristics of a case: those of table 3.1 of the thesis, and the partner that a driver has to see.
 
 Atmosphere, lighting and surface follow from the case's weather. The partner, which a driver has to see to pass, follows
-from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class. A
-case may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has
-figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
+from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class, or
+stated by the case: ``<characteristics alignment="curve" obstruction="vehicle"/>``. What they state of the place and of
+the others is compared with the map and with rehearsals of all cases (`basu.scenarios.road_there`, a test). A played
+case also has figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no
+meaning here.
 """
 
 from __future__ import annotations
@@ -67,7 +69,7 @@ class Alignment(enum.Enum):
 
 
 class JunctionRelation(enum.Enum):
-    """Relation to a junction."""
+    """Relation to a junction; an approach begins 60 m before one."""
 
     NONE = "none"
     APPROACH = "approach"
@@ -80,6 +82,7 @@ class TrafficControl(enum.Enum):
 
     NONE = "none"
     STOP_SIGN = "stop-sign"
+    YIELD_SIGN = "yield-sign"
     TRAFFIC_LIGHT = "traffic-light"
 
 
@@ -88,6 +91,32 @@ class Obstruction(enum.Enum):
 
     NONE = "none"
     VEHICLE = "vehicle"
+
+
+class Highway(enum.Enum):
+    """Highway occurrence: whether 45 mph and more are posted at the conflict."""
+
+    NO = "no"
+    YES = "yes"
+
+
+class Speeding(enum.Enum):
+    """Whether another vehicle is more than 1 m/s faster than the posted limit."""
+
+    NO = "no"
+    YES = "yes"
+
+
+class Violation(enum.Enum):
+    """The rule that another road user breaks; that of the ego is judged and not chosen."""
+
+    NONE = "none"
+    RED_LIGHT = "red-light"
+    STOP_SIGN = "stop-sign"
+    RIGHT_OF_WAY = "right-of-way"
+    LANE_CHANGE = "lane-change"
+    WRONG_SIDE = "wrong-side"
+    DOOR = "door"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,6 +131,9 @@ class Characteristics:
     control: TrafficControl = TrafficControl.NONE
     obstruction: Obstruction = Obstruction.NONE
     partner: Partner = Partner.VEHICLE
+    highway: Highway = Highway.NO
+    speeding: Speeding = Speeding.NO
+    violation: Violation = Violation.NONE
 
     def among(self, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:
         """Whether each field that is ``wanted`` has one of its values there."""
@@ -119,7 +151,7 @@ _AT_STOP_SIGN = {"junction": "intersection", "control": "stop-sign"}
 OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ from the defaults
     "ControlLoss": {"surface": "slippery", "partner": "none"},
     "SlipperyStop": {"surface": "slippery", "junction": "approach", "control": "stop-sign", "partner": "sign"},
-    "BendDeparture": {"alignment": "curve", "partner": "none"},
+    "BendDeparture": {"surface": "slippery", "alignment": "curve", "partner": "none"},
     "CrossWind": {"partner": "none"},
     "SteeringDeviation": {"partner": "none"},
     "RunningForTheShuttle": {"partner": "walker"},
@@ -129,17 +161,25 @@ OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ fro
     "PedestrianTurn": {"junction": "intersection"},
     "CyclistAtRightTurn": {"junction": "intersection"},
     "CyclistCrossing": {"junction": "intersection"},
-    "CutInBeforeStop": {"junction": "approach", "control": "stop-sign"},
-    "RightHook": {"junction": "approach"},
-    "FollowLeadingVehicle": {"junction": "approach"},
+    "BackingCar": {"violation": "right-of-way"},
+    "CutInAtTtc": {"violation": "lane-change"},
+    "Dooring": {"violation": "door"},
+    "DriftingNeighbour": {"violation": "lane-change"},
+    "NarrowedStreet": {"violation": "wrong-side"},
+    "OncomingOvertaker": {"violation": "wrong-side"},
+    "ParkedCarPullsOut": {"violation": "right-of-way"},
+    "StrayingOncoming": {"violation": "wrong-side"},
+    "CutInBeforeStop": {"junction": "approach", "control": "stop-sign", "violation": "lane-change"},
+    "RightHook": {"junction": "approach", "violation": "lane-change"},
+    "FollowLeadingVehicle": {"junction": "approach", "control": "stop-sign"},
     "FollowLeadingVehicleWithObstacle": {"junction": "approach"},
-    "CarAcrossJunction": {"junction": "intersection"},
+    "CarAcrossJunction": {"junction": "intersection", "violation": "right-of-way"},
     "EgoTurnsLeft": {"junction": "intersection"},
-    "LeftTurnAcrossPath": {"junction": "intersection"},
-    "RedLightRunner": {"junction": "intersection", "control": "traffic-light"},
-    "RightTurnIntoPath": {"junction": "intersection"},
-    "Roundabout": {"junction": "roundabout", "alignment": "curve"},
-    "StopSignRunner": {"junction": "intersection"},
+    "LeftTurnAcrossPath": {"junction": "intersection", "violation": "right-of-way"},
+    "RedLightRunner": {"junction": "intersection", "control": "traffic-light", "violation": "red-light"},
+    "RightTurnIntoPath": {"junction": "intersection", "violation": "right-of-way"},
+    "Roundabout": {"junction": "roundabout", "control": "yield-sign", "alignment": "curve"},
+    "StopSignRunner": {"junction": "intersection", "violation": "stop-sign"},
     "StraightCrossingPaths": _AT_STOP_SIGN,
     "TurnIntoTraffic": _AT_STOP_SIGN,
     "UnsignalizedIntersection": _AT_STOP_SIGN,

@@ -133,7 +133,22 @@ def _strata(group: Group, results: Sequence[CountedCase], *, whole_group: bool =
     for result in results:
         if result.group is group:
             by_scenario[result.scenario].append(result)
-    meant = {name: stands_for(name, group, of[0].pre_crash) for name, of in by_scenario.items()}
+    weights = scenario_weights(group, [result for of in by_scenario.values() for result in of])
+    total = sum(weights.values())
+    if whole_group and any(stands_for(name, group, of[0].pre_crash) for name, of in by_scenario.items()):
+        total = max(total, float(sum(kind.thousands for kind in PRE_CRASH.values() if kind.group is group)))
+    return [
+        Stratum(weights[name] / total, sum(one.verdict is Verdict.SUCCESS for one in of), len(of))
+        for name, of in by_scenario.items()
+    ]
+
+
+def scenario_weights(group: Group, results: Iterable[CountedCase]) -> dict[str, float]:
+    """Return the weight of each scenario of a group: the thousands of yearly crashes that it stands for.
+
+    Scenarios that stand for the same pre-crash scenario share its crashes. One that stands for none weighs as the mean.
+    """
+    meant = {each.scenario: stands_for(each.scenario, group, each.pre_crash) for each in results}
     sharing: dict[int, int] = defaultdict(int)
     for kinds in meant.values():
         for kind in kinds:
@@ -141,14 +156,7 @@ def _strata(group: Group, results: Sequence[CountedCase], *, whole_group: bool =
     weights = {name: sum(kind.thousands / sharing[kind.number] for kind in kinds) for name, kinds in meant.items()}
     known = [weight for weight in weights.values() if weight > 0.0]
     mean = sum(known) / len(known) if known else 1.0
-    weights = {name: weight or mean for name, weight in weights.items()}
-    total = sum(weights.values())
-    if whole_group and known:
-        total = max(total, float(sum(kind.thousands for kind in PRE_CRASH.values() if kind.group is group)))
-    return [
-        Stratum(weights[name] / total, sum(one.verdict is Verdict.SUCCESS for one in of), len(of))
-        for name, of in by_scenario.items()
-    ]
+    return {name: weight or mean for name, weight in weights.items()}
 
 
 def _combined(strata: Iterable[Stratum]) -> Estimate:

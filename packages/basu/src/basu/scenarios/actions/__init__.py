@@ -3,7 +3,7 @@
 from basu.scenarios.actions.cut_in import SlowerUntilTtc
 from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
 from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering
-from basu.scenarios.actions.maneuvers import Accelerate, Brake, ChangeLane, Drift, Hold
+from basu.scenarios.actions.maneuvers import Accelerate, BackUp, Brake, ChangeLane, Drift, Hold
 from basu.scenarios.actions.one_frame import (
     Action,
     CloseDoor,
@@ -26,6 +26,7 @@ from basu.scenarios.actions.walking import WalkAlong
 __all__ = [
     "Accelerate",
     "Action",
+    "BackUp",
     "Brake",
     "Bump",
     "ChangeLane",

@@ -1,9 +1,11 @@
-"""Maneuvers of a vehicle: accelerate, brake, hold, change lanes and drift."""
+"""Maneuvers of a vehicle: accelerate, brake, hold, change lanes, drift and back up."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal
 
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.actions.path_follower import AtEnd, FollowerLimits, PathFollower, minded
 
 if TYPE_CHECKING:
@@ -178,3 +180,40 @@ class Drift(ChangeLane):
     def change_m(self) -> float:
         """As long as the rate makes it."""
         return abs(self.across_m) / self.rate_mps * max(self.goal_mps, self.speed_mps, 1.0)
+
+
+class BackUp(Action):
+    """Let a vehicle back straight up for some metres and stand; a vehicle that the ego touches is let go."""
+
+    def __init__(self, actor: str, way_m: float, speed_mps: float) -> None:
+        super().__init__(f"{actor} backs up {way_m:.1f} m at {speed_mps:g} m/s")
+        self.actor, self.way_m, self.speed_mps = actor, way_m, speed_mps
+
+    def begin(self) -> None:
+        """Note where it stands."""
+        body = self.stage.body(self.actor)
+        self.x_m, self.y_m, self.yaw_rad = body.x_m, body.y_m, body.yaw_rad
+        self.touched = False
+
+    def act(self) -> str | None:
+        """One frame backwards."""
+        if self.actor in self.stage.ego_contacts:
+            self.touched = True
+            return "touched by the ego"
+        body = self.stage.body(self.actor)
+        gone_m = math.hypot(body.x_m - self.x_m, body.y_m - self.y_m)
+        if gone_m >= self.way_m - self.speed_mps * self.stage.step_s / 2.0:
+            return f"{gone_m:.1f} m backwards"
+        speed_mps, cos, sin = self.speed_mps, math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        self.stage.move(self.actor, -speed_mps * cos, -speed_mps * sin, 0.0)
+        return None
+
+    def leave(self, *, broken_off: bool) -> None:
+        """Stand; a touched vehicle rolls."""
+        del broken_off
+        if not self.stage.is_there(self.actor):
+            return
+        if self.touched:
+            self.stage.let_go(self.actor)
+        else:
+            self.stage.move(self.actor, 0.0, 0.0, 0.0)

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 
+OFF_ROAD_M = 1.0  # of the way: less is the edge of a wheel
+
+
 class Answer(enum.Enum):
     """What one case says about a requirement."""
 
@@ -32,7 +35,8 @@ def answer_of(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer
     """Return what a case's ``result.json`` says about a requirement.
 
     A case shows nothing if its conflict did not come about. A check that holds in a drive that was not completed shows
-    nothing either: a vehicle that stands for ever touches no actor.
+    nothing either: a vehicle that stands for ever touches no actor. A check that holds off the road is broken: on the
+    pavement a vehicle touches no actor of its lane.
     """
     case = result["case"]
     verdict = Verdict(case["verdict"])
@@ -44,7 +48,16 @@ def answer_of(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer
     completed = case["assessment"]["completed"]
     if found.answer is Answer.HELD and completed["holds"] is False:
         return CaseAnswer(Answer.NOT_SHOWN, f"not completed: {completed['sentence']}")
+    left_m = _off_road_m(result)
+    if found.answer is Answer.HELD and left_m >= OFF_ROAD_M:
+        return CaseAnswer(Answer.BROKEN, f"it drove {left_m:.1f} m off the road; {found.sentence}")
     return found
+
+
+def _off_road_m(result: Mapping[str, Any]) -> float:
+    """Return how far the ego drove beside the road or on the pavement, m; 0 where the record does not say."""
+    where = (result.get("outside_lanes") or {}).get("metres_by_where") or {}
+    return float(where.get("off_road", 0.0)) + float(where.get("sidewalk", 0.0))
 
 
 def _no_contact(_check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer:

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.library.crossing_paths.from_the_side import NARROWLY, OTHER, SETTLED_S, AcrossTheWay
+from basu.scenarios.library.crossing_paths.from_the_side import (
+    NARROWLY,
+    OTHER,
+    SETTLED_S,
+    AcrossTheWay,
+    green_for_ego,
+    has_light,
+)
 from basu.scenarios.library.road_users import SETS_OFF_MPS2
 from basu.scenarios.parameters import Choice, Number
 
@@ -26,7 +33,8 @@ class RightTurnIntoPath(AcrossTheWay):
     """A vehicle turns right out of a side street, just in front of the ego, and takes its time.
 
     NHTSA pre-crash scenario 31, turning at a non-signalised junction. The other comes out of its stop street shortly
-    before the ego is there and needs a while to get going: an ego that does not slow down hits its boot.
+    before the ego is there and needs a while to get going: an ego that does not slow down hits its boot. Where the
+    junction has lights, the ego's is green, and the other turns right on red: scenario 28.
     """
 
     turn = "right"
@@ -49,6 +57,10 @@ class RightTurnIntoPath(AcrossTheWay):
     def lateness_s(self) -> float:
         """It gets there before the ego."""
         return -self.number("lead")
+
+    def setup(self) -> Behaviour | None:
+        """Green for the ego where the junction has lights."""
+        return green_for_ego(self.place) if has_light(self.place) else None
 
     def conflict(self) -> Behaviour:
         """It turns in, dawdles, and drives on."""

@@ -1,0 +1,1 @@
+"""Risk for a mile: encounters, failure probabilities of played cases, and injury curves, with their uncertainty."""
