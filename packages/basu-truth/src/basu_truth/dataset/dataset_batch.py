@@ -83,9 +83,9 @@ class DatasetBatch(Batch):
                 )
         else:
             write_json(path, {"version": VERSION, "conditions": dict(given), "drives": [], "samples": 0})
+        shutil.rmtree(self.folder / SCRATCH, ignore_errors=True)  # of a command that was killed
         for part in (DRIVES, SCRATCH):
             (self.folder / part).mkdir(exist_ok=True)
-        self.clear()
 
     def finish(self) -> tuple[int, int]:
         """Write the list of drives and shards, and return the numbers of drives and samples.

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 OF_CONDITION = ("id", "subject", "identity", "town", "weather", "vehicles", "walkers", "density_per_km", "seed")
 """The fields of a campaign's job that describe its drive."""
-TIMEOUT_S = 60.0  # of wall time for one frame of the replay
+TIMEOUT_S = 300.0  # of wall time for one frame of the replay; the first one may compile kernels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
