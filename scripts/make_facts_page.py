@@ -18,28 +18,30 @@ HEAD = """# Where Linden's facts come from
 
 <!-- written by scripts/make_facts_page.py -->
 
-`packages/linden/src/linden/data/linden.geojson` has the facts of which the shipped map is built. Most values have a neighbour
-that says how sure they are, such as `lanes_confidence` for `lanes`. This page counts them.
+`packages/linden/src/linden/data/linden.geojson` has the facts of which the shipped map is built. Most values have a
+neighbour that says how sure they are, such as `lanes_confidence` for `lanes`. This page counts them.
 
 | word | meaning |
 |---|---|
-| measured | coordinates of a public data set: census boundaries, crash records, bus stops, bike stations, geocoded addresses |
+| measured | coordinates of a public data set: census blocks, crash records, bus stops, bike stations, addresses |
 | read | a value that a document or a record states |
 | estimated | chosen here: by a rule, by what is usual, or by a guess |
 | no origin | the file states a value and not where it comes from; read it as estimated |
 
 """
 TAIL = """
-Values that contradict each other or bear a wrong label in their source count as read or measured here. Their `confidence` says so.
+Values that contradict each other or bear a wrong label in their source count as read or measured here. Their
+`confidence` says so.
 
-Everything that the file does not have is drawn by rules with a fixed seed: houses, porches, trees, fences, lamps, poles, crosswalks,
-lane markings and the railroad's track. No picture of the real place was compared ([maps](maps.md#linden)).
+Everything that the file does not have is drawn by rules with a fixed seed: houses, porches, trees, fences, lamps,
+poles, crosswalks, lane markings and the railroad's track. No picture of the real place was compared
+([maps](maps.md#linden)).
 
 ## How steep
 
-The ground is a plane: {north:.2f} % up to the north and {east:.2f} % up to the east, at {base_m:g} m. Both are estimated. Public elevation
-models were not used: none was at hand when the map was built. `linden map build --elevation FILE` takes one,
-a GeoTIFF, LAS or LAZ. So hills, dips and the real slope of single streets are not in the map.
+The ground is a plane: {north:.2f} % up to the north and {east:.2f} % up to the east, {base_m:g} m high at the origin.
+All three are estimated. No measured elevation model is in the map, so its hills, dips and the real slope of single
+streets are missing. `linden map build --elevation FILE` lays the streets on one, a GeoTIFF, LAS or LAZ.
 
 ## Sources
 
@@ -115,7 +117,9 @@ def page(document: dict[str, Any]) -> str:
     km = sum(metres.values()) / 1000.0
     said = f"\nBy length, {metres[MEASURED] / 10.0 / km:.0f} % of the {km:.1f} km of centre lines are measured.\n"
     metadata = document["metadata"]
-    sources = "\n".join(f"- {each.strip()}" for each in metadata["authored_from"].removeprefix("coordinate facts in: ").split(";"))
+    sources = "\n".join(
+        f"- {each.strip()}" for each in metadata["authored_from"].removeprefix("coordinate facts in: ").split(";")
+    )
     ground = metadata["ground"]
     tail = TAIL.format(
         sources=sources,

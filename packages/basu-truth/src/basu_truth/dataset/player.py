@@ -87,7 +87,7 @@ def _shards(settings: DatasetSettings, job: Mapping[str, Any], packed: bytes, do
         UserError: the run cannot be replayed with these sensors.
         SimulatorError: a simulator went away.
     """
-    folder = settings.scratch / job["id"]
+    folder: Path = settings.scratch / job["id"]
     shutil.rmtree(folder, ignore_errors=True)  # of an attempt that was killed
     with tempfile.TemporaryDirectory(dir=settings.scratch, prefix="run-") as temporary:
         run_folder = Path(temporary) / job["id"]
