@@ -1,4 +1,4 @@
-"""Claims about a service amid SUMO's traffic: the same bytes again, persons conserved, totals as in SUMO's own files."""
+"""A service amid SUMO's traffic: the same bytes again, persons conserved, totals as in SUMO's own files."""
 
 import json
 import xml.etree.ElementTree as ET

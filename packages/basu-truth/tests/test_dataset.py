@@ -1,4 +1,4 @@
-"""``basu record dataset``: the same bytes again, also after a break, readers of the shards, and input that is refused."""
+"""``basu record dataset``: the same bytes, also after a break; readers of the shards; input that is refused."""
 
 import json
 import tarfile
