@@ -33,15 +33,15 @@ TAIL = """
 Values that contradict each other or bear a wrong label in their source count as read or measured here. Their
 `confidence` says so.
 
-Everything that the file does not have is drawn by rules with a fixed seed: houses, porches, trees, fences, lamps,
+What the file does not have is drawn by rules with a fixed seed. These are houses, porches, trees, fences, lamps,
 poles, crosswalks, lane markings and the railroad's track. No picture of the real place was compared
 ([maps](maps.md#linden)).
 
 ## How steep
 
 The ground is a plane: {north:.2f} % up to the north and {east:.2f} % up to the east, {base_m:g} m high at the origin.
-All three are estimated. No measured elevation model is in the map, so its hills, dips and the real slope of single
-streets are missing. `linden map build --elevation FILE` lays the streets on one, a GeoTIFF, LAS or LAZ.
+All three are estimated. No measured elevation model is in the map. So hills, dips and the real slope of single streets
+are missing. `linden map build --elevation FILE` lays the streets on one, a GeoTIFF, LAS or LAZ.
 
 ## Sources
 

@@ -42,8 +42,8 @@ def demand(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def drive(output: Path, demand: Path) -> Path:
     """Drive a service on a server of its own, because SUMO's files name actors by their ids; return its folder."""
     words = ["service", "run", "basic", "--minutes", str(MINUTES), "--demand", str(demand), "--no-holding"]
-    words += ["--sumo", "demand", "--sumo-scale", "3", "--sumo-output", "--seed", "4", "--output", str(output)]
-    assert main(words) in {0, 1}
+    words += ["--sumo", "demand", "--sumo-scale", "3", "--sumo-output", "--seed", "4", "--step-limit", "120"]
+    assert main([*words, "--output", str(output)]) in {0, 1}
     return output / "latest"
 
 

@@ -73,7 +73,7 @@ def write_scans(bag: Path, folder: Path, topic: str | None, every: int) -> int:
         with AnyReader([bag], default_typestore=types_of(Generation.ROS_2).store) as reader:
             chosen = _topic(reader, topic, bag)
             tracks = _tracks(reader)
-            lines = []
+            lines: list[str] = []
             for number, (time_s, frame, points) in enumerate(_clouds(reader, chosen, bag)):
                 if number % every:
                     continue

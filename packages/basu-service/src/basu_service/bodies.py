@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
     from basu_service.operation import Service
 
-EVERY_TICKS = 10  # half a second between two looks at who waits
+EVERY_TICKS = 10  # half a second between two looks at the persons
 APART_M = 1.2  # from person to person: an assumption of this project, as are the other lengths
 BESIDE_M = 3.0  # from the middle of the lane at a stop without a pavement
 PAVEMENT_M = 8.0  # the farthest pavement that belongs to a stop
@@ -57,7 +57,7 @@ class Bodies(BaseManager):
             self._stops.setdefault(stop_of(stop.id), pavement(run.carla_map, here))
 
     def tick(self, frame: Frame) -> None:
-        """Let bodies come for persons that have come, and go for those that wait no more."""
+        """Let bodies come for persons that have come, and go for persons that wait no more."""
         if self._run is None or frame.tick % EVERY_TICKS:
             return
         t_s = frame.tick * self._run.step_s
