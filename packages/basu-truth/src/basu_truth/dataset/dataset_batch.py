@@ -1,6 +1,6 @@
 """`DatasetBatch`: the drives of a data set, which goes on after the command was killed.
 
-``<dataset>/dataset.json`` has the conditions and the drives of the data set. ``shards.txt`` has the names of all shards.
+The folder holds ``dataset.json`` with conditions and drives, and ``shards.txt`` with the names of all shards.
 ``drives/<drive>/`` holds the shards of one drive, ``truth.json`` and ``drive.json``. The folder gets its name in one
 step when all is in it.
 """
