@@ -1,7 +1,7 @@
 """`DatasetBatch`: the drives of a data set, which goes on after the command was killed.
 
 The folder holds ``dataset.json`` with conditions and drives, and ``shards.txt`` with the names of all shards.
-``drives/<drive>/`` holds the shards of one drive, ``truth.json`` and ``drive.json``. The folder gets its name in one
+Each folder below ``drives`` holds the shards of one drive, ``truth.json`` and ``drive.json``. It gets its name in one
 step when all is in it.
 """
 

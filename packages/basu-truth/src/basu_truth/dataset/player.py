@@ -67,7 +67,10 @@ def open_dataset_player(settings: DatasetSettings) -> Iterator[Play]:
 
 
 def _played(settings: DatasetSettings, drive: Play, job: dict[str, Any]) -> JobOutcome:
-    """Drive a job; its folder of shards lies in the scratch folder then."""
+    """Drive a job; its folder of shards lies in the scratch folder then.
+
+    The next job gets a fresh simulator. Tracks have the ids of actors, and a simulator counts on from drive to drive.
+    """
     outcome = drive(job)
     done: DriveDone = outcome.value
     packed, done = done.packed, done._replace(packed=None)
@@ -77,7 +80,7 @@ def _played(settings: DatasetSettings, drive: Play, job: dict[str, Any]) -> JobO
         folder = _shards(settings, job, packed, done)
     except (UserError, SimulatorError) as error:
         return JobOutcome(not_begun(outcome_of(error, lambda: None)), After.FRESH)
-    return JobOutcome(done._replace(folder=folder), outcome.after)
+    return JobOutcome(done._replace(folder=folder), After.FRESH)
 
 
 def _shards(settings: DatasetSettings, job: Mapping[str, Any], packed: bytes, done: DriveDone) -> Path:
