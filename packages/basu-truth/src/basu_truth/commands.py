@@ -92,8 +92,8 @@ def add_record(record: argparse.ArgumentParser) -> None:
 def _add_dataset(dataset: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu record dataset``."""
     dataset.description = (
-        "Drive each job of a campaign and look at it with a sensor rig. Write pictures, clouds and objects as tar files "
-        "in the convention of WebDataset, which training programs stream."
+        "Drive each job of a campaign and look at it with a sensor rig. Write pictures, clouds and objects as tar "
+        "files in the convention of WebDataset, which training programs stream."
     )
     dataset.add_argument("file", type=Path, metavar="CAMPAIGN.toml", help="a file of `basu campaign run`")
     dataset.add_argument(
