@@ -155,7 +155,7 @@ def test_a_data_set_stays_as_it_was_begun(files: Path, tmp_path: Path, capsys: p
 
 
 def test_a_campaign_that_searches_is_refused(tmp_path: Path, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = CAMPAIGN.replace('sweep = 2\nvary = ["ahead"]', "search = {drives = 6, first = 3, batch = 1}")
+    text = CAMPAIGN.replace('sweep = 2\nvary = ["ahead"]', "search = {drives = 8, first = 4, batch = 2}")
     (tmp_path / "campaign.toml").write_text(text)
     (tmp_path / "rig.json").write_bytes((files / "rig.json").read_bytes())
     assert record(tmp_path, tmp_path / "set") == 2
