@@ -28,4 +28,4 @@ def test_the_short_route_is_driven_to_its_end(tmp_path: Path) -> None:
     assert main([*words, "--output", str(tmp_path)]) == 0
     result = json.loads((tmp_path / "latest" / "result.json").read_text(encoding="utf-8"))
     assert (result["status"], result["scores"]["driving"]) == ("Completed", pytest.approx(1.0, abs=0.01))
-    assert result["meta"]["route"]["town"] == "Linden_thesis"
+    assert result["meta"]["town"] == "Linden_thesis"
