@@ -43,6 +43,7 @@ pages:  ## the generated pages and tables of docs/
 	$(BIN)/python scripts/make_command_line_page.py
 	$(BIN)/python scripts/make_agent_page.py
 	$(BIN)/python scripts/make_gate_page.py
+	$(BIN)/python scripts/make_facts_page.py
 	$(BIN)/python scripts/make_fault_page.py
 	$(BIN)/python scripts/make_openscenario_page.py
 	$(BIN)/python scripts/make_rules_page.py

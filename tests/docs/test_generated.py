@@ -12,6 +12,7 @@ SCRIPTS = [
     "make_command_line_page.py",
     "make_agent_page.py",
     "make_gate_page.py",
+    "make_facts_page.py",
     "make_fault_page.py",
     "make_openscenario_page.py",
     "make_rules_page.py",

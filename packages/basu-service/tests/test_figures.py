@@ -1,6 +1,7 @@
 """Claims about the figures of a service: falls, headways, connections, the document, and the comparison in pairs."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,10 @@ from basu.metrics.json_schema import schema_of
 from basu.output.report.documents import mistakes
 from basu_service.compare_command import comparison, services_in
 from basu_service.console import table
+from basu_service.demand import Connection
 from basu_service.document import ServiceDocument, read_service, schema_text, service_schema, write_service
 from basu_service.falls import Stander, falls, of_hundred, threshold_mps2
+from basu_service.figures import connection_of, connections
 from basu_service.operator import Trace
 from basu_service.page import PAGE_FILE, write_page
 from point_service import NeverStops, Played, demand, honest, play
@@ -48,6 +51,34 @@ def test_the_count_of_falls_is_that_of_single_persons() -> None:
     many = falls([Stander(False, (n + 0.5) / 100, INCIDENT_MPS2) for n in range(100)])
     assert many.value == pytest.approx(of_hundred(INCIDENT_MPS2, holds_on=False).value, abs=1.0)
     assert many.low <= many.value <= many.high
+
+
+def test_a_late_rider_misses_the_connection_that_the_timetable_promised() -> None:
+    played = play(honest(), holds=True, wanted=demand(6.0))
+    journey = next(each for each in played.service.journeys if each.alighted_s is not None)
+    person = replace(journey.person, connects=True)
+    promised_s = played.plan.promised_arrival_s(person.stop_id, person.destination_id, person.came_s)
+    assert promised_s is not None
+    begins_s = played.plan.timetable.run_departure_s
+    line = Connection(name="X", every_s=600.0, first_s=begins_s + promised_s + 100.0, walk_s=60.0, share=1.0)
+    wanted = replace(played.operated.demand, connections={person.destination_id: line})
+    operated = played.operated._replace(demand=wanted)
+
+    def made(alighted_s: float | None, *, connects: bool = True) -> bool | None:
+        rider = replace(person, connects=connects)
+        return connection_of(replace(journey, person=rider, alighted_s=alighted_s), operated)
+
+    assert made(promised_s + 40.0) is True  # 40 s late and 60 s on foot: the departure is 100 s after the promise
+    assert made(promised_s + 41.0) is False
+    assert made(None) is None
+    assert made(promised_s + 41.0, connects=False) is None
+    late = [replace(each, person=replace(each.person, connects=True)) for each in played.service.journeys]
+    played.service.journeys[:] = late
+    counted = connections(operated)
+    going = [
+        each for each in late if each.person.destination_id == person.destination_id and each.alighted_s is not None
+    ]
+    assert counted["made"] + counted["missed"] == len(going) > 1
 
 
 def test_headways_of_a_regular_service_are_the_planned_ones() -> None:

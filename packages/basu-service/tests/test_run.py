@@ -5,12 +5,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from basu.cli import main
+from basu.records.history.files import read_history
 from basu_service.document import read_service
 from servers import RunningServer
 
+STEP_S = 0.05
 Services = Callable[..., tuple[int, Path]]
 DIES = """
 class Dies(AutonomousAgent):
@@ -177,3 +180,42 @@ def test_bad_input_is_a_sentence_and_leaves_nothing(
     assert code == 2
     assert says in capsys.readouterr().err
     assert not folder.exists()
+
+
+@pytest.mark.slow
+def test_persons_that_wait_are_walkers_beside_the_stop_until_they_board(services: Services, busy: Path) -> None:
+    options = ["--minutes", 0.45, "--demand", busy, "--seed", 4, "--no-holding"]
+    (_, plain), (_, first), (_, again) = (
+        services("basic", *options, *more, name=name)
+        for name, more in (("plain", ()), ("one", ("--bodies",)), ("two", ("--bodies",)))
+    )
+    for name in ("service.json", "history.parquet", "shuttle_2/history.parquet"):
+        assert (first / name).read_bytes() == (again / name).read_bytes(), name
+    document = read_service(first)
+    came_s = [each["came_s"] for each in document["journeys"]]
+    assert came_s == [each["came_s"] for each in read_service(plain)["journeys"]]  # the same persons
+    walkers, history = seen_walkers(first), read_history(first)
+    assert seen_walkers(plain) == {}
+    boarded_s = [each["boarded_s"] for each in document["journeys"] if each["boarded_s"] is not None]
+    assert len(walkers) >= 3
+    stop = next(each for each in history.facts.route.stops if each.id == "S1")
+    for rows in walkers.values():
+        places = np.array([(row["x_m"], row["y_m"]) for row in rows])
+        assert np.ptp(places, axis=0).max() < 0.5  # it stands
+        away_m = np.hypot(places[0, 0] - stop.x_m, places[0, 1] - stop.y_m)
+        assert 1.5 < away_m < 25.0
+    ends_s = [STEP_S * float(rows[-1]["tick"]) for rows in walkers.values()]
+    gone_s = [end_s for end_s in ends_s if end_s < document["lasts_s"] - 1.0]
+    assert len(gone_s) >= 2
+    for end_s in gone_s:  # each look at who waits is half a second after the one before
+        assert min(abs(end_s - each) for each in boarded_s) < 0.7
+
+
+def seen_walkers(folder: Path) -> dict[int, list[Any]]:
+    """Return the rows of each walker in the record of the first vehicle, by its number."""
+    history = read_history(folder)
+    found: dict[int, list[Any]] = {}
+    for row in history.others:
+        if history.facts.actor_types.get(int(row["id"]), "").startswith("walker."):
+            found.setdefault(int(row["id"]), []).append(row)
+    return found

@@ -95,6 +95,7 @@ def _add_conditions(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--no-holding", action="store_true", help="let vehicles leave a stop before their time in the timetable"
     )
+    group.add_argument("--bodies", action="store_true", help="show persons that wait as walkers beside their stops")
 
 
 SERVICE = Command("drive a shuttle service with passengers, and compare services", add_service)

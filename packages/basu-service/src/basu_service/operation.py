@@ -93,6 +93,11 @@ class Journey:
         """Whether the person stands at its stop, if it has come."""
         return self.boarded_s is None and self.gave_up_s is None
 
+    def stands_there(self, t_s: float) -> bool:
+        """Return whether the person stands at its stop at a time."""
+        came_s = self.person.came_s
+        return self.waits and came_s <= t_s <= came_s + self.person.patience_s
+
 
 @dataclass(slots=True)
 class _Doors:

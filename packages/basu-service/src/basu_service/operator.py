@@ -38,9 +38,10 @@ class VehicleOperator(BaseManager):
         last_s: the time of its latest frame.
     """
 
-    def __init__(self, service: Service, vehicle: int, plan: ServicePlan) -> None:
-        """Operate the vehicle at a place in the service, counted from 0."""
+    def __init__(self, service: Service, vehicle: int, plan: ServicePlan, beside: Sequence[BaseManager] = ()) -> None:
+        """Operate the vehicle at a place in the service, counted from 0; managers ``beside`` watch its drive too."""
         self._service, self._vehicle, self._plan = service, vehicle, plan
+        self._beside = tuple(beside)
         self._parked = False
         self._live: Live | None = None
         self._next = 0  # among the stops of its route
@@ -49,9 +50,9 @@ class VehicleOperator(BaseManager):
         self.last_s = 0.0
 
     def managers(self, live: Live) -> Sequence[BaseManager]:
-        """Return itself, which watches the drive."""
+        """Return itself, which watches the drive, and the managers beside it."""
         self._live = live
-        return (self,)
+        return (self, *self._beside)
 
     def interlock(self, control: carla.VehicleControl) -> carla.VehicleControl:
         """Return the agent's control, or the parking brake while the doors are not closed."""

@@ -56,4 +56,5 @@ def conditions_of(arguments: argparse.Namespace) -> ServiceConditions:
         demand=arguments.demand,
         timetable=arguments.timetable,
         holds=not arguments.no_holding,
+        bodies=arguments.bodies,
     )

@@ -30,6 +30,7 @@ from basu.running.one_run import Session, run_one
 from basu.running.preparation import prepare
 from basu.running.run_player import ENDING
 from basu.simulator import simulator_for
+from basu_service.bodies import Bodies
 from basu_service.demand import packaged_demand, read_demand
 from basu_service.document import SERVICE_FILE, read_service, write_service
 from basu_service.figures import Operated
@@ -65,6 +66,7 @@ class ServiceConditions:
     demand: str | None = None  # a file; None: that of this distribution
     timetable: str | None = None  # a file; None: that of the route
     holds: bool = True  # whether vehicles wait at stops for the timetable
+    bodies: bool = False  # whether persons that wait are walkers in the world
 
     def __post_init__(self) -> None:
         """Check the length.
@@ -227,7 +229,8 @@ def _driven(
     people = draw_persons(planned.demand, options.seed, plan.timetable.run_departure_s, lasts_s)
     due = (plan.planned_departure_s,) if conditions.holds else ()
     service = Service(people, len(planned.run.shuttles), *due)
-    operators = [VehicleOperator(service, place, plan) for place in range(len(plan.starts_m))]
+    beside = [(Bodies(service),) if conditions.bodies and place == 0 else () for place in range(len(plan.starts_m))]
+    operators = [VehicleOperator(service, place, plan, others) for place, others in enumerate(beside)]
     shuttles = tuple(
         shuttle._replace(operator=operator) for shuttle, operator in zip(planned.run.shuttles, operators, strict=True)
     )

@@ -80,6 +80,7 @@ def given_of(options: RunOptions, agent: str, planned: PlannedService) -> dict[s
         "--minutes": conditions.minutes,
         "--apart": conditions.apart_min,
         "--no-holding": not conditions.holds,
+        **({"--bodies": True} if conditions.bodies else {}),
         "the demand": f"sha256 {hashlib.sha256(repr(demand).encode()).hexdigest()[:16]}",
     }
 

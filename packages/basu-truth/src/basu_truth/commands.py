@@ -1,4 +1,4 @@
-"""Arguments of ``basu truth``: export the ground truth of a recorded run, and evaluate a detector against it."""
+"""Arguments of ``basu truth`` and of ``basu record``: ground truth of runs, scores of detectors, and data sets."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from basu.settings.command_line import add_options
 
 FORMATS = ("coco", "kitti", "nuscenes")
 USUAL_EVERY = 10  # two frames a second of a run's twenty, as in nuScenes
+USUAL_PER_SHARD = 500  # samples, with three pictures and a cloud each some 500 MB to 1 GB
 
 
 def add_truth(truth: argparse.ArgumentParser) -> None:
@@ -79,3 +80,48 @@ def _add_replay(command: argparse.ArgumentParser) -> None:
 
 
 TRUTH = Command("write the ground truth of a recorded run, and score detectors against it", add_truth)
+
+
+def add_record(record: argparse.ArgumentParser) -> None:
+    """Add the commands below ``basu record``."""
+    record.description = "Recordings as data sets for training."
+    commands = record.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    _add_dataset(commands.add_parser("dataset", help="drive a campaign with a sensor rig and write shards of samples"))
+
+
+def _add_dataset(dataset: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu record dataset``."""
+    dataset.description = (
+        "Drive each job of a campaign and look at it with a sensor rig. Write pictures, clouds and objects as tar "
+        "files in the convention of WebDataset, which training programs stream."
+    )
+    dataset.add_argument("file", type=Path, metavar="CAMPAIGN.toml", help="a file of `basu campaign run`")
+    dataset.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FOLDER", help="the folder of the data set"
+    )
+    dataset.add_argument(
+        "--sensors", type=Path, metavar="FILE.json", help="the rig (default: three cameras and a lidar)"
+    )
+    dataset.add_argument(
+        "--every",
+        type=int,
+        default=USUAL_EVERY,
+        metavar="N",
+        help="take each Nth frame of a drive (default: %(default)s)",
+    )
+    dataset.add_argument(
+        "--per-shard",
+        type=int,
+        default=USUAL_PER_SHARD,
+        metavar="N",
+        help="samples of a full shard; a shard has frames of one drive (default: %(default)s)",
+    )
+    dataset.add_argument("--drives", type=int, metavar="N", help="only the first N drives (default: all)")
+    dataset.add_argument(
+        "--workers", type=int, default=1, metavar="N", help="drives that are recorded at the same time (default: 1)"
+    )
+    dataset.add_argument("--resume", action="store_true", help="go on with a data set that was interrupted")
+    dataset.set_defaults(command=later("basu_truth.dataset.record_command:run"))
+
+
+RECORD = Command("drive a campaign with a sensor rig and write a data set for training", add_record)

@@ -11,7 +11,7 @@ from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.options.run import RunOptions
 from basu_carla_log.server_replay import Where
-from basu_truth.exporting import export
+from basu_truth.exporting import WRITERS, export
 from basu_truth.recorded_run import in_weather, read_run
 from basu_truth.truth import read_truth
 
@@ -52,6 +52,7 @@ def write_export(arguments: argparse.Namespace, run_folder: Path, folder: Path, 
     if arguments.weather is not None:
         recorded = in_weather(recorded, arguments.weather)
     least_s = 0.1 if sys.stderr.isatty() else 10.0
+    make_writer = None if format_name is None else WRITERS[format_name]
     with tqdm(total=recorded.log.frames, unit=" frames", desc="exporting", mininterval=least_s) as bar:
-        for done in export(recorded, folder, format_name, where, every=arguments.every):
+        for done in export(recorded, folder, make_writer, where, every=arguments.every):
             bar.update(done.frame - bar.n)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from contextlib import ExitStack
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from basu.errors import UserError
@@ -18,7 +17,8 @@ from basu_truth.scene import replayed
 from basu_truth.truth import Truth, TruthFrame, write_truth
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from basu_carla_log.server_replay import Where
     from basu_truth.recorded_run import RecordedRun
@@ -36,7 +36,14 @@ class Writer(Protocol):
         """Write what is written once all frames are known."""
 
 
-WRITERS: dict[str, Callable[[Path, Sequence[Sensor]], Writer]] = {
+class MakeWriter(Protocol):
+    """Makes the writer of an export."""
+
+    def __call__(self, folder: Path, sensors: Sequence[Sensor]) -> Writer:
+        """Return the writer into a folder that is there, for these sensors."""
+
+
+WRITERS: dict[str, MakeWriter] = {
     "coco": CocoWriter,
     "kitti": KittiWriter,
     "nuscenes": NuscenesWriter,
@@ -52,13 +59,15 @@ class Exported(NamedTuple):
     objects: int
 
 
-def export(run: RecordedRun, folder: Path, format_name: str | None, where: Where, *, every: int) -> Iterator[Exported]:
+def export(
+    run: RecordedRun, folder: Path, make_writer: MakeWriter | None, where: Where, *, every: int
+) -> Iterator[Exported]:
     """Write the truth of a run into a new folder; yield after each frame.
 
     Args:
         run: the recorded run.
         folder: that is written; it must not exist.
-        format_name: one of ``WRITERS``; None: only the truth, without pictures and clouds.
+        make_writer: makes the writer of the format; None: only the truth, without pictures and clouds.
         where: the simulator that replays the run.
         every: each so manyth frame of the recording is written.
 
@@ -75,22 +84,24 @@ def export(run: RecordedRun, folder: Path, format_name: str | None, where: Where
     except OSError as error:
         raise UserError(f"{draft} could not be made: {error.strerror}; name another folder with -o") from error
     try:
-        yield from _written(run, draft, format_name, where, every=every)
+        yield from _written(run, draft, make_writer, where, every=every)
         draft.rename(folder)
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
 
 
-def _written(run: RecordedRun, draft: Path, format_name: str | None, where: Where, *, every: int) -> Iterator[Exported]:
+def _written(
+    run: RecordedRun, draft: Path, make_writer: MakeWriter | None, where: Where, *, every: int
+) -> Iterator[Exported]:
     """Write the export into a folder that is there."""
     frames: list[TruthFrame] = []
     objects: list[SeenObject] = []
     with ExitStack() as stack:
-        scene = stack.enter_context(replayed(run, where, every=every, pictures=format_name is not None))
+        scene = stack.enter_context(replayed(run, where, every=every, pictures=make_writer is not None))
         bare = stack.enter_context(alone_world(run.town, scene.declared, run.step_s, where.timeout_s))
         sensors = tuple(each.sensor for each in scene.declared)
-        writer = None if format_name is None else WRITERS[format_name](draft, sensors)
+        writer = None if make_writer is None else make_writer(draft, sensors)
         observer = Observer(scene, bare)
         for shot in scene.shots():
             seen = observer.observed(shot)

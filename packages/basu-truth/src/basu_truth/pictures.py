@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 def write_picture(path: Path, measured: carla.Image) -> None:
     """Write a picture as PNG, red, green and blue."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(path, png_of(measured))
+
+
+def png_of(measured: carla.Image) -> bytes:
+    """Return a picture as PNG, red, green and blue."""
     stream = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(picture_of(measured)[:, :, 2::-1])).save(stream, "PNG", compress_level=3)
-    write_bytes(path, stream.getvalue())
+    return stream.getvalue()

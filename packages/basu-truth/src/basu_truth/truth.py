@@ -154,7 +154,7 @@ class Truth:
 
 def write_truth(folder: Path, truth: Truth) -> None:
     """Write ``truth.json`` into a folder."""
-    document = {"version": VERSION, **_rounded(asdict(truth))}
+    document = {"version": VERSION, **rounded(asdict(truth))}
     write_bytes(folder / TRUTH_FILE, (json.dumps(document, separators=(",", ":")) + "\n").encode())
 
 
@@ -176,14 +176,14 @@ def read_truth(folder: Path) -> Truth:
             every=document["every"],
             sensors=tuple(Sensor(**{**each, "pose": Pose(*each["pose"])}) for each in document["sensors"]),
             frames=tuple(TruthFrame(**{**each, "ego": Pose(*each["ego"])}) for each in document["frames"]),
-            objects=tuple(_object(each) for each in document["objects"]),
+            objects=tuple(object_of(each) for each in document["objects"]),
         )
     except (KeyError, TypeError) as error:
         raise UserError(f"{path} is not what `basu truth export` writes: {error!r}; export the run again") from error
 
 
-def _object(entry: Mapping[str, Any]) -> SeenObject:
-    """Return an object of the document."""
+def object_of(entry: Mapping[str, Any]) -> SeenObject:
+    """Return an object of the document, or of a sample of a data set."""
     values = {each.name: entry[each.name] for each in fields(SeenObject)}
     for name in ("box", "box_in_sensor"):
         values[name] = Pose(*values[name])
@@ -194,10 +194,10 @@ def _object(entry: Mapping[str, Any]) -> SeenObject:
     return SeenObject(**values)
 
 
-def _rounded(value: Any) -> Any:  # noqa: ANN401 - a document of JSON
+def rounded(value: Any) -> Any:  # noqa: ANN401 - a document of JSON
     """Return a document with its numbers to the micrometre and the millionth of a degree."""
     if isinstance(value, dict):
-        return {key: _rounded(each) for key, each in value.items()}
+        return {key: rounded(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [_rounded(each) for each in value]
+        return [rounded(each) for each in value]
     return round(value, 6) if isinstance(value, float) else value

@@ -1,4 +1,4 @@
-"""Arguments of ``basu ros bag`` and ``read``."""
+"""Arguments of ``basu ros bag``, ``read`` and ``scans``."""
 
 from __future__ import annotations
 
@@ -29,6 +29,20 @@ def add_ros(ros: argparse.ArgumentParser) -> None:
     )
     bag.set_defaults(command=later("basu_ros.cli.ros_bag:run"))
     _add_read(actions.add_parser("read", help="make a run's record of a bag"))
+    _add_scans(actions.add_parser("scans", help="write the clouds of a bag for a point cloud map"))
+
+
+def _add_scans(scans: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu ros scans``."""
+    scans.description = (
+        "Write the clouds of a lidar in a bag as PCD files with the sensor's poses in the map, which "
+        "`linden map pointcloud --from` makes a map of."
+    )
+    scans.add_argument("bag", type=Path, metavar="BAG", help="a bag of ROS 1 or ROS 2 with a lidar and TF")
+    scans.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="the folder to write")
+    scans.add_argument("--topic", metavar="TOPIC", help="the lidar's clouds (default: the only ones)")
+    scans.add_argument("--every", type=int, default=1, metavar="N", help="take each Nth cloud (default: %(default)s)")
+    scans.set_defaults(command=later("basu_ros.cli.ros_scans:run"))
 
 
 def _add_read(read: argparse.ArgumentParser) -> None:

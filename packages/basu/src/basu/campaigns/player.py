@@ -66,6 +66,7 @@ class PlayerSettings:
     metric_files: tuple[Path, ...]
     sample: float  # share of drives that leave a record in any case
     scratch: Path | None  # for folders of drives in work; None: the system's
+    record: bool = False  # CARLA's log in the folder of each drive
 
 
 def drive_player(settings: PlayerSettings) -> PlayerSpec:
@@ -94,7 +95,8 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
             )
             for typed in settings.agents
         }
-        with simulator_for(SimulatorSpec(is_open=settings.open)) as simulator:
+        recordings = Path(scratch) if settings.record else None
+        with simulator_for(SimulatorSpec(is_open=settings.open, recordings=recordings)) as simulator:
             driver = _Player(settings, agents, library, simulator, Path(scratch))
             yield driver.play
 
@@ -166,6 +168,7 @@ class _Player:
             with_scenarios=job["scenarios"],
             scenario_files=settings.scenario_files,
             metric_files=settings.metric_files,
+            record=settings.record,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
@@ -200,6 +203,7 @@ class _Player:
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
             metric_files=settings.metric_files,
+            record=settings.record,
         )
         session = CaseSession(options, self._simulator, self._towns, settings.scoring, pictures=False)
         (playable,) = self._library.of_id(job["identity"])

@@ -45,6 +45,7 @@ def test_a_line_elsewhere_or_the_own_line_does_not_count() -> None:
     own = Standing(*HERE, 102.0)
     assert not heard(100.0, 105.0, (60.0, 0.0)).is_before(own, 105.0)
     assert not heard(100.0, 105.0, (0.1, 0.0)).is_before(own, 105.0)
+    assert heard(100.0, 105.0, (0.0, 37.0)).is_before(own, 105.0)  # opposite lines of a junction of the LEAP
 
 
 @pytest.mark.parametrize("text", ["", "LINE", "LINE 1 2", "LINE 1 2 3 4", "LINE a b c", "LINE nan 0 1", "LEFT A 5"])

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-SAME_JUNCTION_M = 25.0  # between two lines of one junction
+SAME_JUNCTION_M = 38.0
+"""Between two lines of one junction. Of Linden's 53 pairs of stop signs at one junction 52 are nearer. So are four
+pairs of signs at neighbouring junctions. There a vehicle may wait without need while the other one crosses."""
 CLEAR_S = 0.5  # stops less apart than this are at the same time
 KEPT_S = 0.6  # a text; it comes each 0.2 s
 YIELDS_S = 10.0  # after this time at the line the vehicle yields no more: the other one cannot go

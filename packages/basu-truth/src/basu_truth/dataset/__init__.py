@@ -1,0 +1,1 @@
+"""Data sets of recorded drives: shards of samples, which training programs stream."""
