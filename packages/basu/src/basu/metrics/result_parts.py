@@ -263,6 +263,7 @@ class ScenarioPart(TypedDict):
     actors: list[ActorPart]
     things: list[dict[str, Any]]
     timeout_s: Amount
+    timed_out: NotRequired[Annotated[bool, "whether its time was used up; absent in results of earlier versions"]]
     scenarios_file: Annotated[str, "file and line"]
 
 
