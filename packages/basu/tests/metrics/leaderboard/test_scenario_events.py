@@ -53,7 +53,10 @@ def test_a_scenario_behind_the_leaderboards_end_does_not_count() -> None:
         ([LET_BY], []),
         ([NEVER_NEAR], [Kind.YIELD_EMERGENCY]),
         ([{**IN_TIME, "reached": False}], [Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY]),
-        ([{key: value for key, value in IN_TIME.items() if key != "timed_out"}], [Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY]),
+        (
+            [{key: value for key, value in IN_TIME.items() if key != "timed_out"}],
+            [Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY],
+        ),
     ],
 )
 def test_what_no_scenario_could_show_is_named_as_not_measured(rows: list[dict[str, Any]], missing: list[Kind]) -> None:

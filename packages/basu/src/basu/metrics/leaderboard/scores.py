@@ -41,9 +41,7 @@ class LeaderboardScores:
     not_measured: tuple[Kind, ...]  # counted as not having happened
 
 
-def leaderboard_scores(
-    history: History, scenarios: Sequence[Mapping[str, Any]] = ()
-) -> tuple[LeaderboardScores, ...]:
+def leaderboard_scores(history: History, scenarios: Sequence[Mapping[str, Any]] = ()) -> tuple[LeaderboardScores, ...]:
     """Return the scores of every version; ``scenarios`` are the drive's, as ``result.json`` has them."""
     return tuple(_scores(history, version, scenarios) for version in Version)
 

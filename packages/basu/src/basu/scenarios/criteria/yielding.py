@@ -44,6 +44,4 @@ class YieldsToEmergencyVehicle(Criterion):
         passed = ahead_m <= 0.0
         where = f"{self.role} was {abs(ahead_m):.1f} m {'ahead of' if passed else 'behind'} the ego"
         sentence = f"{where} at {float(ego['t_s']):.2f} s{'' if passed else ': the ego did not let it pass'}"
-        return self.says(
-            played, passed, sentence, tick=tick, measured=ahead_m, unit="m", limit=limit, other=self.role
-        )
+        return self.says(played, passed, sentence, tick=tick, measured=ahead_m, unit="m", limit=limit, other=self.role)

@@ -41,7 +41,9 @@ class ComesFromBehind(PathFollower):
     """Lead a vehicle so much faster than the ego; it brakes for the ego where that is in its way."""
 
     def __init__(self, actor: str, path: Path, faster_mps: float) -> None:
-        super().__init__(f"{actor} comes from behind, {faster_mps:g} m/s faster than the ego", actor, path, minds=(EGO,))
+        super().__init__(
+            f"{actor} comes from behind, {faster_mps:g} m/s faster than the ego", actor, path, minds=(EGO,)
+        )
         self.faster_mps = faster_mps
 
     def wanted_mps(self) -> float:
