@@ -143,9 +143,8 @@ def _record(index: int, run: SubmittedRun, version: SubmissionVersion) -> dict[s
     """One entry of ``records``."""
     result, scores = run.result, (run.result.metrics.get("leaderboard") or {}).get(version)
     infractions: dict[str, list[str]] = {kind.value: [] for kind in RECORDED}
-    events = [] if scores is None else scores["events"]
-    for event in events:
-        infractions[event["kind"]].append(_sentence(event, run, scores))
+    for event in () if scores is None else scores["events"]:
+        infractions[event["kind"]].append(_sentence(event, run, scores or {}))
     completion = 0.0 if scores is None else scores["route_completion"]
     factor = 1.0 if scores is None else scores["infraction_penalty"]
     count = sum(map(len, infractions.values()))
