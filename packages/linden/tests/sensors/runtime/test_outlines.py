@@ -1,4 +1,4 @@
-"""Claims about what the camera of lines draws of Linden: lanes, kerbs, crosswalks, and boxes of actors by their kind."""
+"""Claims about what the camera of lines draws of Linden: lanes, kerbs, crosswalks, boxes of actors by their kind."""
 
 from pathlib import Path
 
