@@ -1,6 +1,6 @@
 """What ``sensor.camera.cosmos_visualization`` draws: lane lines, kerbs, crosswalks, poles, and boxes of actors.
 
-Source: ``CosmosControlSensor.cpp`` of carla-simulator/carla, branch ue4-dev, for colours, widths and which things are
+Source: ``CosmosControlSensor.cpp`` of carla-simulator/carla (commit 084fe059) for colours, widths and which things are
 boxes, areas or lines. Where that draws splines of Unreal's roads, these are edges of the map's lanes: between two
 driving lanes a lane line, beside a pavement or a median and at the outer edge of a road a boundary. Stop lines are
 those that the map paints; arrows and other stencils are left out.
