@@ -177,7 +177,7 @@ def test_a_picture_without_pixels_is_refused(world: carla.World) -> None:
         world.spawn_actor(blueprint, carla.Transform())
 
 
-def test_the_camera_of_lines_frames_the_car_ahead_until_it_is_told_to_leave_it_out(
+def test_the_camera_of_lines_frames_the_car_ahead_unless_it_shall_leave_it_out(
     client: carla.Client, world: carla.World
 ) -> None:
     client.set_timeout(60.0)

@@ -109,6 +109,6 @@ def test_an_agent_takes_part_in_the_track_that_it_says(declared: object) -> None
         check_declared(declared, "MAP", "An")
 
 
-def test_an_agent_without_a_track_is_told_so() -> None:
+def test_an_agent_without_a_track_gets_a_sentence() -> None:
     with pytest.raises(UserError, match="An has track = None"):
         check_declared(None, "MAP", "An")

@@ -31,7 +31,7 @@ def add_leaderboard(leaderboard: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, required=True, metavar="FILE.json", help="the file to write; it is replaced"
     )
     results.add_argument(
-        "--version", choices=VERSIONS, default="2.0", help="whose rules of scoring count (default: %(default)s)"
+        "--version", choices=VERSIONS, default="2.0", help="the version of the rules of scoring (default: %(default)s)"
     )
     results.set_defaults(command=later("basu_leaderboard.commands:run"))
 

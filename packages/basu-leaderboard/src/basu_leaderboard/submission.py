@@ -94,7 +94,7 @@ def submission(runs: Sequence[SubmittedRun], version: SubmissionVersion) -> dict
 
     Args:
         runs: in the order of routes and repetitions.
-        version: whose rules of scoring count.
+        version: of the rules of scoring.
 
     Raises:
         UserError: there is no run, or one was not held to a track of the leaderboard, or to another than the first.

@@ -2,7 +2,7 @@
 
 Source: ``validate_sensor_configuration`` and ``_preprocess_sensor_spec`` in ``leaderboard/autoagents/agent_wrapper.py``
 of carla-simulator/leaderboard, branches leaderboard-2.0 and leaderboard-2.1, which agree. The rules are checked in the
-benchmark's process on what the simulator would be asked for, so that an agent cannot change them from its own.
+benchmark's process, before the simulator gets the sensors. So an agent cannot change them from its own process.
 """
 
 from __future__ import annotations

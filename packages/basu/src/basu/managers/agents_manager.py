@@ -104,7 +104,7 @@ class AgentsManager(BaseManager):
         return () if self._agent.gives_sensors_late else self._agent.sensor_set()
 
     def admitted(self, specs: tuple[SensorSpec, ...], source: str) -> tuple[SensorSpec, ...]:
-        """Return the sensors of a set that the simulator is asked for, by the rules of the leaderboard's track.
+        """Return the sensors of a set for the simulator, by the rules of the leaderboard's track.
 
         Raises:
             UserError: the set breaks a rule.

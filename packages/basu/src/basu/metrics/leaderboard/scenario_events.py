@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 YIELDS = "yields to the emergency vehicle"
-"""The name of the criterion whose judgement is the leaderboard's infraction."""
+"""The name of the criterion that judges the leaderboard's infraction."""
 
 
 def scenario_events(history: History, scenarios: Sequence[Mapping[str, Any]]) -> tuple[LeaderboardEvent, ...]:

@@ -1,9 +1,9 @@
 """What ``sensor.camera.cosmos_visualization`` draws: lane lines, kerbs, crosswalks, poles, and boxes of actors.
 
 Source: ``CosmosControlSensor.cpp`` of carla-simulator/carla (commit 084fe059) for colours, widths and which things are
-boxes, areas or lines. Where that draws splines of Unreal's roads, these are edges of the map's lanes: between two
-driving lanes a lane line, beside a pavement or a median and at the outer edge of a road a boundary. Stop lines are
-those that the map paints; arrows and other stencils are left out.
+boxes, areas or lines. That sensor draws splines of Unreal's roads; here edges of the map's lanes take their place. A
+lane line lies between two driving lanes. A boundary lies beside a pavement or a median, and at the outer edge of a
+road. Stop lines are the painted ones of the map. Arrows and other stencils are left out.
 """
 
 from collections.abc import Iterator
@@ -89,7 +89,7 @@ def _of_box(tag: int, box: BoundingBox) -> Strokes:
 
 
 def _ego(episode: "Episode") -> frozenset[int]:
-    """Return the id of the first actor whose role says that it is the ego; none where there is none."""
+    """Return the id of the first actor with an ego's role; none where there is none."""
     for record in episode.actors:
         role = record.description.attribute("role_name", "")
         if any(own in role for own in OWN_ROLES):

@@ -54,8 +54,8 @@ class ComesFromBehind(PathFollower):
 class YieldToEmergencyVehicle(Scenario):
     """An emergency vehicle comes from behind; the ego must pull over to let it pass.
 
-    The leaderboard's YieldToEmergencyVehicle on a street with one lane each way: the vehicle drives on the middle
-    line, faster than the ego, and is stuck where the ego stays in the middle of its lane. An ego that draws to the
+    The leaderboard's YieldToEmergencyVehicle on a street with one lane each way. The vehicle drives on the middle
+    line and is faster than the ego. It is stuck while the ego stays in the middle of its lane. An ego that draws to the
     right edge, by 0.6 m or more for the shuttle, is passed. From 50 m on it has ``patience`` seconds. None of BASU's
     agents pulls over, so no case of it comes with BASU: it is for routes and cases of your own.
     """
