@@ -12,9 +12,10 @@ import multiprocessing
 import statistics
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
+from typing import TypeVar
 
 import numpy as np
 from carla_driver_interface.driver import BaseDriver, DriveContext, DriveResult
@@ -26,11 +27,13 @@ from carla_driver_interface.server import serving
 from basu.agents.builtin.scene import VehicleGeometry
 from basu.agents.sensor_file import parse_sensors
 from basu.records.motion import VehicleMotion
+from basu.routing import Route
 from basu_alpasim import observations, plan
 from basu_alpasim.basic_policy import BasicPolicy, Known, sent_route
 from basu_alpasim.frames import OriginPose, rig_pose
 from basu_alpasim.policy_client import Call, PolicyClient
 
+T = TypeVar("T")
 AXLE_M, SPEED_MPS, STEP_US = 1.44, 8.0, 50_000
 CAMERAS = {"none": (), "512 x 320": ((512, 320),), "1920 x 1080": ((1920, 1080),)}
 
@@ -59,17 +62,23 @@ def serve(policy: str, port: Connection) -> None:
 
 @contextmanager
 def served(policy: str) -> Iterator[str]:
+    with process_of(policy) as (address, _):
+        yield address
+
+
+@contextmanager
+def process_of(policy: str) -> Iterator[tuple[str, int]]:
     ours, theirs = multiprocessing.get_context("spawn").Pipe()
     process = multiprocessing.get_context("spawn").Process(target=serve, args=(policy, theirs), daemon=True)
     process.start()
-    yield f"127.0.0.1:{ours.recv()}"
+    yield f"127.0.0.1:{ours.recv()}", process.pid
     ours.send(None)
     process.join()
 
 
 def measured(address: str, sizes: tuple[tuple[int, int], ...], requests: int) -> tuple[float, float, float, float]:
     """Medians of ms: to make and send the observations, to get the answer, to read it; and CPU of all."""
-    route = sent_route(Pose.identity(), np.column_stack([np.arange(0.0, 2000.0, 1.0), np.zeros(2000), np.zeros(2000)]))
+    route = straight_route()
     entries = [
         {"type": "sensor.camera.rgb", "id": f"camera_{width}", "x": 1.0, "z": 1.5, "width": width, "height": height}
         for width, height in sizes
@@ -108,6 +117,38 @@ def measured(address: str, sizes: tuple[tuple[int, int], ...], requests: int) ->
         used.append(time.process_time() - began_cpu_s)
     client.close()
     return tuple(1e3 * statistics.median(times_s) for times_s in (told, answered, read, used))
+
+
+def tick_cost(policy: str, ticks: int, measure: Callable[[Callable[[int], None], int, int], T]) -> T:
+    """What ``measure`` says of requests without cameras; it is given the request, their number and the process id."""
+    with process_of(policy) as (address, pid):
+        route = straight_route()
+        client, session = PolicyClient(address), str(uuid.uuid4())
+        client.await_ready(20.0)
+        client.start(observations.session_request(session, (), AXLE_M, client.revision), 0)
+
+        def request(number: int) -> None:
+            now_us = 2 * number * STEP_US
+            along = [(time_us, moving(time_us)) for time_us in (max(now_us - STEP_US, 0), now_us)][number == 0 :]
+            rig = rig_pose(along[-1][1], AXLE_M)
+            ahead = observations.route_ahead(session, now_us, route, float(rig.position[0]), rig)
+            motion = Call("submit_egomotion_observation", observations.egomotion(session, along, AXLE_M))
+            client.call([motion, Call("submit_route", ahead)], now_us)
+            drive = DriveRequest(session_uuid=session, time_now_us=now_us, time_query_us=now_us + 2 * STEP_US)
+            response = client.call([Call("drive", drive)], now_us)[0]
+            plan.Trajectory(plan.read_plan(response, now_us, AXLE_M), now_us, OriginPose(along[-1][1].x_m, 0.0, 0.0))
+
+        try:
+            return measure(request, ticks, pid)
+        finally:
+            client.close()
+
+
+def straight_route() -> Route:
+    points_m = np.column_stack([np.arange(0.0, 2000.0), np.zeros(2000), np.zeros(2000)])
+    route = sent_route(Pose.identity(), points_m)
+    assert route is not None
+    return route
 
 
 def moving(time_us: int) -> VehicleMotion:

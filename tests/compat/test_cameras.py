@@ -175,3 +175,40 @@ def test_a_picture_without_pixels_is_refused(world: carla.World) -> None:
         blueprint.set_attribute(f"image_size_{axis}", "8192")
     with pytest.raises(RuntimeError, match="it has at most 16777216 pixels"):
         world.spawn_actor(blueprint, carla.Transform())
+
+
+def test_the_camera_of_lines_frames_the_car_ahead_unless_it_shall_leave_it_out(
+    client: carla.Client, world: carla.World
+) -> None:
+    client.set_timeout(60.0)
+    library, start = world.get_blueprint_library(), spawn_point(world, 100)
+    hero = library.find("vehicle.tesla.model3")
+    hero.set_attribute("role_name", "hero")
+    car = world.spawn_actor(hero, start)
+    ahead = carla.Transform(start.location + 12.0 * start.get_forward_vector(), start.rotation)
+    other = world.spawn_actor(library.find("vehicle.lincoln.mkz_2020"), ahead)
+    blueprint = library.find("sensor.camera.cosmos_visualization")
+    for name, value in (("image_size_x", WIDTH), ("image_size_y", HEIGHT)):
+        blueprint.set_attribute(name, str(value))
+    camera = world.spawn_actor(blueprint, carla.Transform(carla.Location(x=2.4, z=1.8)), attach_to=car)
+    arrived: queue.Queue[carla.Image] = queue.Queue()
+    camera.listen(arrived.put)
+    try:
+        world.tick()
+        image = arrived.get(timeout=60.0)
+        assert (image.width, image.height, image.fov) == (WIDTH, HEIGHT, FOV)
+        before = array(image)
+        camera.set_ignored_vehicles([other.id])
+        world.tick()
+        after = array(arrived.get(timeout=60.0))
+    finally:
+        camera.stop()
+        for actor in (camera, other, car):
+            actor.destroy()
+    colours = {tuple(pixel) for pixel in before[:, :, :3].reshape(-1, 3)}
+    assert {(0, 0, 0), (0, 0, 255), (249, 183, 98), (35, 36, 200)} <= colours  # black, boxes, lane lines, kerbs
+    middle = slice(WIDTH // 2 - 40, WIDTH // 2 + 40)
+    framed, left_out = ((picture[:, middle, 2] == 255).sum() for picture in (before, after))
+    assert framed > 100
+    assert left_out < framed // 4
+    assert (before[:, :, 3] == 255).all()

@@ -10,7 +10,8 @@ from carla_driver_interface.server import serving
 from carla_driver_interface.testing import FakeCamera, FakeLoop, LoopResult
 
 from basu.agents.builtin.scene import VehicleGeometry
-from basu_alpasim.basic_policy import BasicPolicy, Known, sent_route
+from basu_alpasim.basic_policy import OFFERED, BasicPolicy, Known, sent_route
+from basu_alpasim.serve_command import AGENTS
 
 CAR = VehicleGeometry(wheelbase_m=2.87, rear_axle_m=1.44, front_m=2.4, rear_m=2.4, half_width_m=1.08)
 CRUISE_MPS = 8.0
@@ -45,6 +46,20 @@ def test_it_gathers_speed_in_comfort(address: str) -> None:
 def test_the_route_beside_the_vehicle_is_regained(address: str) -> None:
     result = judged(address, 30, initial_lateral_offset_m=0.8, initial_speed_mps=5.0)
     assert abs(result.lateral_offsets_m[-1]) < 0.1
+
+
+@pytest.mark.parametrize("agent", sorted(OFFERED))
+def test_each_offered_agent_keeps_the_lane_and_its_own_speed(agent: str) -> None:
+    with serving(BasicPolicy(Known(CAR, None, CRUISE_MPS, agent)), port=0, host="127.0.0.1", mode="carla") as port:
+        result = judged(f"127.0.0.1:{port}", 200)
+    assert not result.terminated_by_policy
+    assert np.abs(result.lateral_offsets_m).max() < 0.02
+    expected_mps = min(CRUISE_MPS, OFFERED[agent].cap_mps)
+    assert result.speeds_mps[-1] == pytest.approx(expected_mps, abs=0.3)
+
+
+def test_the_command_offers_what_there_is() -> None:
+    assert set(AGENTS) == set(OFFERED)
 
 
 def test_two_sessions_at_once_do_not_mix(address: str) -> None:

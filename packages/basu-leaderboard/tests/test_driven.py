@@ -92,3 +92,66 @@ def test_a_sensor_that_the_simulator_lacks_gets_a_sentence(run: Runner, tmp_path
     code, result = run(path)
     assert (code, result["status"]) == (1, "AgentCrashed")
     assert "sensor 'RADAR' has the type 'sensor.other.can_bus', which the simulator does not have" in result["message"]
+
+
+RIVAL = """
+import carla
+from leaderboard.autoagents.autonomous_agent import AutonomousAgent, Track
+
+AT = {"x": 0.7, "y": 0.0, "z": 1.6, "roll": 0.0, "pitch": 0.0, "yaw": 0.0}
+
+def get_entry_point():
+    return "Rival"
+
+class Rival(AutonomousAgent):
+    def setup(self, path_to_conf_file):
+        self.track = Track.SENSORS
+        import basu_leaderboard.tracks as rules
+        rules.LIMITS["sensor.camera.rgb"] = 99
+        rules.TrackRules.admit = lambda self, specs, source: specs
+
+    def sensors(self):
+        eyes = [{"type": "sensor.camera.rgb", "id": f"EYE_{n}", **AT, "width": 64, "height": 48, "fov": 100}
+                for n in range(9)]
+        return eyes
+
+    def run_step(self, input_data, timestamp):
+        return carla.VehicleControl(throttle=0.5)
+"""
+
+
+def test_an_agent_that_changes_the_rules_in_its_own_process_is_refused_all_the_same(
+    run: Runner, tmp_path: Path
+) -> None:
+    path = tmp_path / "rival.py"
+    path.write_text(RIVAL)
+    code, result = run(path, "--leaderboard-track", "SENSORS")
+    assert code != 0
+    assert result["scores"] is None
+    assert "track SENSORS takes at most 8 sensor.camera.rgb, and these are 9; leave 1 out" in result["message"]
+    assert result["meta"]["access"]["leaderboard"]["refused"] is not None
+
+
+def test_an_agent_of_another_track_is_refused_by_a_sentence(run: Runner) -> None:
+    code, result = run(EXAMPLE, "--leaderboard-track", "MAP")
+    assert code != 0
+    assert "CompassAgent has track = 'SENSORS', and --leaderboard-track is MAP" in result["message"]
+
+
+def test_a_run_of_the_track_sensors_becomes_the_leaderboards_file(run: Runner, tmp_path: Path) -> None:
+    code, result = run(EXAMPLE, "--leaderboard-track", "SENSORS")
+    assert code == 0
+    assert result["meta"]["access"]["track"] == "sensors"
+    out = tmp_path / "results.json"
+    assert main(["leaderboard", "results", str(tmp_path / "runs" / "latest"), "-o", str(out)]) == 0
+    document = json.loads(out.read_text())
+    assert document["sensors"] == ["carla_gnss", "carla_imu", "carla_speedometer"]
+    assert document["entry_status"] == "Finished"
+
+
+@pytest.mark.parametrize("option", ["--open", "--track world"])
+def test_a_track_of_the_leaderboard_and_more_knowledge_exclude_each_other(
+    option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(EXAMPLE), "--leaderboard-track", "SENSORS", *option.split()]) == 2
+    assert f"gives the agent its sensors alone, and {option} gives it more" in capsys.readouterr().err

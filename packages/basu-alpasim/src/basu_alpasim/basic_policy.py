@@ -1,6 +1,6 @@
-"""BASU's agent ``basic`` as a policy of ``carla_driver_interface``.
+"""BASU's agents ``basic``, ``behavioral`` and their like as policies of ``carla_driver_interface``.
 
-With a route of its own it knows signs, lights, stops and limits on the way, as ``basic`` knows them. Otherwise it knows
+With a route of its own it knows signs, lights, stops and limits on the way, as the agent knows them. Otherwise it knows
 the points of the route that the simulator sends, and follows them at a given speed. It sees other actors, the states of
 lights and the posted limit where the simulator sends CARLA's data. It looks at no pictures.
 """
@@ -16,18 +16,24 @@ from carla_driver_interface.driver import BaseDriver, DriveResult
 from carla_driver_interface.geometry import Pose, Trajectory
 from carla_driver_interface.protocol import TrafficLightState
 
+from basu.agents.builtin.baselines import CREEP_MPS
+from basu.agents.builtin.behavioral import UNPOSTED_MPS, beside
+from basu.agents.builtin.driving.driver import BehavioralDriver, Driver
+from basu.agents.builtin.driving.manner import AGGRESSIVE, BASIC, CAUTIOUS, NORMAL
 from basu.agents.builtin.driving.task import make_task
+from basu.agents.builtin.passing.road import make_road
 from basu.agents.builtin.rules.stopping_lines import Light
 from basu.agents.builtin.scene import ActorKind, DrivenVehicle, Other
 from basu.routing import Route
 from basu_alpasim.frames import origin_of, pose_of
-from basu_alpasim.rollout import PlanningDriver
+from basu_alpasim.rollout import UNUSED_PEDALS, PlanningDriver
 
 if TYPE_CHECKING:
     from carla_driver_interface.driver import DriveContext, SessionState
     from carla_driver_interface.protocol import CarlaActorState, CarlaRendererData
     from numpy.typing import NDArray
 
+    from basu.agents.builtin.driving.manner import Manner
     from basu.agents.builtin.scene import VehicleGeometry
     from basu_alpasim.rollout import Rolled
 
@@ -45,22 +51,43 @@ SHOWN = {
 KIND_OF_TYPE = {"vehicle": ActorKind.VEHICLE, "walker": ActorKind.WALKER}
 
 
+class Offered(NamedTuple):
+    """An agent of BASU's as a policy."""
+
+    manner: Manner = BASIC  # one with a way of passing drives as the agent ``behavioral`` does
+    sees_others: bool = True
+    cap_mps: float = math.inf
+
+
+OFFERED = {
+    "basic": Offered(),
+    "behavioral": Offered(NORMAL),
+    "behavioral-cautious": Offered(CAUTIOUS),
+    "behavioral-aggressive": Offered(AGGRESSIVE),
+    "blind": Offered(sees_others=False),
+    "creeper": Offered(sees_others=False, cap_mps=CREEP_MPS),
+}
+"""The agents that drive by a path and a speed. Others press pedals, which the protocol has not, or need a person."""
+
+
 class Known(NamedTuple):
     """What the policy knows before any session."""
 
     body: VehicleGeometry
     route: Route | None  # with its signs; None: as it is sent
     cruise_mps: float  # never faster than this
+    agent: str = "basic"  # a key of ``OFFERED``
 
 
 class BasicPolicy(BaseDriver):
-    """The agent ``basic`` for any number of sessions."""
+    """An agent for any number of sessions."""
 
-    name = "basu-basic"
+    name = "basu"
 
     def __init__(self, known: Known) -> None:
         """Take what all sessions have in common."""
-        self._known = known
+        self._known, self._offered = known, OFFERED[known.agent]
+        self.name = f"basu-{known.agent}"
         self._drivers: dict[str, PlanningDriver] = {}
 
     def on_session_close(self, session: SessionState) -> None:
@@ -84,13 +111,14 @@ class BasicPolicy(BaseDriver):
         )
         data = ctx.renderer_data
         shown = {} if data is None else {light.opendrive_id: light.state for light in data.traffic_lights}
-        rolled = driver.plan(ego, _others(data), lambda light: SHOWN.get(shown.get(light, UNKNOWN), Light.DARK))
+        others = _others(data) if self._offered.sees_others else []
+        rolled = driver.plan(ego, others, lambda light: SHOWN.get(shown.get(light, UNKNOWN), Light.DARK))
         return DriveResult(trajectory_in_rig=_in_rig(rolled, rig, ctx.time_now_us, axle_m))
 
     def _driver(self, ctx: DriveContext, rig: Pose, waypoints: NDArray[np.float64]) -> PlanningDriver | None:
         """The driver of a session: one for a known route, else a new one for the points that have just come."""
         kept = self._drivers.get(ctx.session.uuid)
-        body, route, cruise_mps = self._known
+        body, route, cruise_mps = self._known.body, self._known.route, self._known.cruise_mps
         if kept is not None and route is not None:
             return kept
         if route is None:
@@ -101,11 +129,21 @@ class BasicPolicy(BaseDriver):
         if route is None:
             return None
         step_s = (ctx.time_query_us - ctx.time_now_us) * 1e-6
-        driver = PlanningDriver(make_task(route, body, cruise_mps), body, step_s if step_s > 0.0 else USUAL_STEP_S)
+        step_s = step_s if step_s > 0.0 else USUAL_STEP_S
+        driver = PlanningDriver(self._made(route, min(cruise_mps, self._offered.cap_mps), step_s), body, step_s)
         if kept is not None:
             driver.take_over(kept)
         self._drivers[ctx.session.uuid] = driver
         return driver
+
+    def _made(self, route: Route, cruise_mps: float, step_s: float) -> Driver:
+        """Return the agent's own driver for a route; it passes others where the route was laid on a map."""
+        body, manner = self._known.body, self._offered.manner
+        task = make_task(route, body, cruise_mps, manner)
+        if manner.passing is None:
+            return Driver(task, body, UNUSED_PEDALS, step_s, manner)
+        road = make_road(route, task.path, *beside(route), UNPOSTED_MPS)
+        return BehavioralDriver(task, road, body, UNUSED_PEDALS, step_s, manner)
 
 
 def sent_route(rig: Pose, waypoints: NDArray[np.float64]) -> Route | None:

@@ -12,13 +12,12 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.driving.controllers import DriveModel
-from basu.agents.builtin.driving.driver import Driver
 from basu.agents.builtin.driving.planner import Planner
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from basu.agents.builtin.driving.task import Task
+    from basu.agents.builtin.driving.driver import Driver
     from basu.agents.builtin.rules.stopping_lines import Light
     from basu.agents.builtin.scene import DrivenVehicle, Other, Restriction, VehicleGeometry
 
@@ -58,9 +57,9 @@ class RememberingPlanner(Planner):
 class PlanningDriver:
     """Drives one task by trajectories in the place of pedals and wheel."""
 
-    def __init__(self, task: Task, body: VehicleGeometry, step_s: float) -> None:
-        """Take the task; ``step_s`` is the time between two requests."""
-        self._driver = Driver(task, body, UNUSED_PEDALS, step_s)
+    def __init__(self, driver: Driver, body: VehicleGeometry, step_s: float) -> None:
+        """Take a driver with its task; ``step_s`` is the time between two requests."""
+        self._driver = driver
         self._planner = RememberingPlanner(step_s)
         self._driver.planner = self._planner
         self._body = body

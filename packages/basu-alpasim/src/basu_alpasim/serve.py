@@ -31,14 +31,14 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UserError: a route, a length or an address cannot be used.
     """
-    known = Known(_body(arguments), _route(arguments), _cruise_mps(arguments.cruise))
+    known = Known(_body(arguments), _route(arguments), _cruise_mps(arguments.cruise), arguments.agent)
     ended = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: ended.set())
     mode: ServiceMode = "alpasim" if arguments.alpasim else "carla"  # what lies in ``renderer_data``
     try:
         with serving(BasicPolicy(known), arguments.port, arguments.host, mode=mode) as port:
-            print(f"the policy '{BasicPolicy.name}' listens at {arguments.host}:{port}; end it with Ctrl-C", flush=True)
+            print(f"the policy 'basu-{known.agent}' listens at {arguments.host}:{port}; end it with Ctrl-C", flush=True)
             ended.wait()
     except RuntimeError as error:
         raise UserError(

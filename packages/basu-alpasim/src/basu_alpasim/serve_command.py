@@ -19,6 +19,8 @@ LENGTHS = (
     ("--width", 2.16, "over all"),
 )
 """Of CARLA's vehicle.tesla.model3, rounded; its origin is midway between the axles."""
+AGENTS = ("basic", "behavioral", "behavioral-cautious", "behavioral-aggressive", "blind", "creeper")
+"""The keys of ``basu_alpasim.basic_policy.OFFERED``, which is slow to import; a test compares them."""
 PORT = 50051  # of carla-driver-interface and of AlpaSim's own driver
 
 
@@ -29,7 +31,7 @@ def add_serve(serve: argparse.ArgumentParser) -> None:
     egodriver.description = (
         "Offer an agent of BASU as a driving policy behind AlpaSim's egodriver protocol, until Ctrl-C."
     )
-    egodriver.add_argument("agent", choices=["basic"], help="the agent")
+    egodriver.add_argument("agent", choices=AGENTS, metavar="AGENT", help=f"the agent: {', '.join(AGENTS)}")
     egodriver.add_argument("--host", default="127.0.0.1", metavar="HOST", help="where to listen (default: %(default)s)")
     egodriver.add_argument("--port", type=int, default=PORT, metavar="N", help="0: a free one (default: %(default)s)")
     egodriver.add_argument(

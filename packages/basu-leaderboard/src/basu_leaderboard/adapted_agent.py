@@ -14,6 +14,7 @@ from basu_leaderboard.foreign_class import Dialect, ForeignAgent
 from basu_leaderboard.global_plan import Gps, global_plan
 from basu_leaderboard.provided.carla_data_provider import CarlaDataProvider, GameTime
 from basu_leaderboard.sensor_sets import SPEEDOMETER, translated
+from basu_leaderboard.tracks import check_declared
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -55,11 +56,14 @@ class LeaderboardAgent(AutonomousAgent):
             self._agent.set_global_plan(plan.gps, plan.world)
 
     def sensors(self) -> list[Any]:
-        """What the agent wants to see, without what is answered here."""
+        """What the agent wants to see; what is answered here only for the rules of a track, which count it."""
         given, source = self._agent.sensors(), f"sensors() of {self.foreign.agent_class.__name__}"
         entries, self._pseudo = translated(given, self.foreign.dialect, source)
         self._opendrive = self.map.to_opendrive()
-        return entries
+        if (track := self.config_values.get("leaderboard_track")) is None:
+            return entries
+        check_declared(getattr(self._agent, "track", None), track, self.foreign.agent_class.__name__)
+        return [*entries, *({"id": name, "type": kind} for name, kind in self._pseudo.items())]
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
         """Call the agent's ``run_step`` with measurements in the leaderboard's form, and return its control."""

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 from basu_leaderboard.adapted_agent import LeaderboardAgent, adapted
 from basu_leaderboard.foreign_class import ENTRY_POINT, foreign_agent
 from basu_leaderboard.replacement_modules import install
+from basu_leaderboard.tracks import TrackRules
 
 if TYPE_CHECKING:
     from basu.agents.agent_files import AgentFile
     from basu.agents.autonomous_agent import AutonomousAgent
+    from basu.conditions import LeaderboardTrack
 
 
 def prepare() -> None:
@@ -36,3 +38,8 @@ def agent_in(file: AgentFile, agent_config: str | None) -> type[AutonomousAgent]
 def takes_config(agent: type[AutonomousAgent]) -> bool:
     """Return whether an agent is an adapted one."""
     return issubclass(agent, LeaderboardAgent)
+
+
+def sensor_rules(track: LeaderboardTrack) -> TrackRules:
+    """Return the rules of a track of the leaderboard."""
+    return TrackRules(track)

@@ -17,6 +17,9 @@ Track = Literal["world", "objects", "sensors"]
 WORLD, OBJECTS, SENSORS = "world", "objects", "sensors"
 TRACKS: tuple[str, ...] = get_args(Track)
 
+LeaderboardTrack = Literal["SENSORS", "MAP", "SENSORS_QUALIFIER", "MAP_QUALIFIER"]
+"""A track of the CARLA leaderboard 2.x: which sensors an agent may have, how many and where."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatorSpec:

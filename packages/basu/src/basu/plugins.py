@@ -26,6 +26,7 @@ PARTS = "basu.parts"  # the parts of the benchmark that this project's plugins b
 
 DISTRIBUTIONS = {
     COMMANDS: {
+        "leaderboard": "basu-leaderboard",
         "metrics": "basu-carla-log",
         "replay": "basu-carla-log",
         "ros": "basu-ros",

@@ -8,7 +8,7 @@ from basu_leaderboard.provided.planned_agent import PlannedAgent
 
 
 class Track(enum.Enum):
-    """What an agent says it takes part in. BASU reads it and refuses nothing by it."""
+    """What an agent says it takes part in; ``--leaderboard-track`` of ``basu run`` must be the same."""
 
     SENSORS = "SENSORS"
     MAP = "MAP"

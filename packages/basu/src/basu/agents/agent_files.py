@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from basu.agents.autonomous_agent import AutonomousAgent
+    from basu.agents.sensor_file import SensorSpec
+    from basu.conditions import LeaderboardTrack
 
 FOREIGN_PACKAGES = {"leaderboard": "leaderboard", "srunner": "leaderboard", "agents": "leaderboard"}
 """What agents of other programs import, and the plugin that then reads their files."""
@@ -22,6 +24,20 @@ class AgentFile(NamedTuple):
     module_name: str
     path: str
     class_name: str | None  # that the user names; None: the only one
+
+
+class SensorRules(Protocol):
+    """Rules on an agent's sensors, of one run."""
+
+    def admit(self, specs: tuple[SensorSpec, ...], source: str) -> tuple[SensorSpec, ...]:
+        """Return the sensors that the simulator has; ``source`` is what complaints begin with.
+
+        Raises:
+            UserError: the set breaks a rule; the sentence names it.
+        """
+
+    def document(self) -> dict[str, object]:
+        """Return the track, the types of the admitted sensors, and the sentence of a refusal."""
 
 
 class AgentFiles(Protocol):
@@ -44,6 +60,9 @@ class AgentFiles(Protocol):
 
     def takes_config(self, agent: type[AutonomousAgent]) -> bool:
         """Return whether an agent is one of this kind, which takes a text for its setup."""
+
+    def sensor_rules(self, track: LeaderboardTrack) -> SensorRules:
+        """Return the rules of a track of the program that the files are written for."""
 
 
 def readers() -> list[AgentFiles]:
@@ -82,3 +101,15 @@ def foreign_agent(file: AgentFile, agent_config: str | None, *, has_own: bool) -
 def takes_config(agent: type[AutonomousAgent]) -> bool:
     """Return whether an agent takes the text of ``--agent-config``."""
     return any(reader.takes_config(agent) for reader in readers())
+
+
+def sensor_rules(track: LeaderboardTrack) -> SensorRules:
+    """Return the rules of a track of the leaderboard.
+
+    Raises:
+        UserError: the plugin for the leaderboard is not installed.
+    """
+    rules: SensorRules = plugins.load(plugins.AGENT_FILES, "leaderboard", f"--leaderboard-track {track}").sensor_rules(
+        track
+    )
+    return rules

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
+from basu.agents.agent_files import sensor_rules
 from basu.agents.calls import SETUP_LIMIT_S, AgentCalls
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
+from basu.conditions import SENSORS
 from basu.errors import AgentError, UserError
 from basu.managers.base_manager import BaseManager
 from basu.managers.conduct import Conduct
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor
-    from basu.conditions import Track
+    from basu.conditions import LeaderboardTrack, Track
     from basu.managers.base_manager import Frame, Run
     from basu.managers.person import Person
     from basu.routing.route_file import RoutePoint
@@ -43,6 +45,7 @@ class AgentsManager(BaseManager):
         person: Person | None = None,
         seed: int = 0,
         track: Track | None = None,
+        leaderboard_track: LeaderboardTrack | None = None,
         is_open: bool = False,
         has_conditions: bool = True,
     ) -> None:
@@ -50,7 +53,8 @@ class AgentsManager(BaseManager):
 
         ``routes`` is the command line's, which goes before the agent's; ``person`` may take over from the agent;
         ``seed`` is what everything random in the agent's own process begins with; ``track`` goes before the agent's;
-        ``is_open`` connects its process to the simulator itself. Without ``has_conditions`` the route, the vehicle, the
+        ``leaderboard_track`` is one of the leaderboard's, with rules on sensors; ``is_open`` connects its process to
+        the simulator itself. Without ``has_conditions`` the route, the vehicle, the
         weather and the traffic are the benchmark's: the agent's wishes for them become the sentence ``ignored``.
         """
         self.person = person
@@ -70,14 +74,17 @@ class AgentsManager(BaseManager):
             self.ignored = _ignored(self._agent.name, config.conditions_asked())
             config = config.without_conditions()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
-        if track is not None:
-            self.config = replace(self.config, track=track)
+        self._leaderboard_track = leaderboard_track
+        self._rules = None if leaderboard_track is None else sensor_rules(leaderboard_track)
+        if track is not None or self._rules is not None:
+            self.config = replace(self.config, track=track or SENSORS)
         self.control = self.requested = carla.VehicleControl(brake=1.0)
 
     @property
     def access(self) -> dict[str, Any]:
         """The agent's track, whether a gate stood between it and the simulator, and what that refused."""
-        return self._passage.document(self.config.track)
+        rules = {} if self._rules is None else {"leaderboard": self._rules.document()}
+        return {**self._passage.document(self.config.track), **rules}
 
     @property
     def manual(self) -> bool:
@@ -96,13 +103,23 @@ class AgentsManager(BaseManager):
         """
         return () if self._agent.gives_sensors_late else self._agent.sensor_set()
 
+    def admitted(self, specs: tuple[SensorSpec, ...], source: str) -> tuple[SensorSpec, ...]:
+        """Return the sensors of a set for the simulator, by the rules of the leaderboard's track.
+
+        Raises:
+            UserError: the set breaks a rule.
+        """
+        return specs if self._rules is None else self._rules.admit(specs, source)
+
     def late_sensors(self) -> tuple[SensorSpec, ...]:
         """The sensor set of an agent that can give it only now that it is set up; empty for all others.
 
         Raises:
             UserError: as ``own_sensors``.
         """
-        return (self._agent.sensor_set() or ()) if self._agent.gives_sensors_late else ()
+        if not self._agent.gives_sensors_late:
+            return ()
+        return self.admitted(self._agent.sensor_set() or (), f"sensors() of {self._agent.name}")
 
     def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Take the sensors that were spawned for the agent; whether its process listens to them itself."""
@@ -120,7 +137,7 @@ class AgentsManager(BaseManager):
             "world": run.world,
             "map": run.carla_map,
             "vehicle": run.vehicle,
-            **self._passage.told(run.route, asdict(self.config)),
+            **self._passage.told(run.route, asdict(self.config) | {"leaderboard_track": self._leaderboard_track}),
             "time_step_s": run.step_s,
             "server_address": self._passage.open(run, self.config.track),
         }

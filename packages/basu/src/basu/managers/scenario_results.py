@@ -66,5 +66,6 @@ def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[st
         "actors": playing.actors(),
         "things": [thing._asdict() for thing in playing.things],
         "timeout_s": playing.scenario.timeout_s,
+        "timed_out": playing.outcome is not None and playing.outcome.status is Status.SCENARIO_TIMEOUT,
         "scenarios_file": playing.planned.case.source,
     }

@@ -40,12 +40,13 @@ T = TypeVar("T", bound="type[Metric]")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What a metric is computed from: the record, the rules of scoring, and how the run ended."""
+    """What a metric is computed from: the record, the rules of scoring, how the run ended, and judged scenarios."""
 
     history: History
     scoring: Scoring
     outcome: Outcome
     hears_lane_invasions: bool = True  # False in a case: its record has none of these events
+    scenarios: tuple[Mapping[str, Any], ...] = ()  # of the route, or the drive's case, as ``result.json`` has them
 
 
 class Watcher(Protocol):

@@ -234,7 +234,13 @@ def judge(
     )
     if history is None or len(history.frames) == 0:
         return empty
-    drive = Drive(history=history, scoring=scoring, outcome=outcome, hears_lane_invasions=case is None)
+    drive = Drive(
+        history=history,
+        scoring=scoring,
+        outcome=outcome,
+        hears_lane_invasions=case is None,
+        scenarios=tuple(scenarios) if case is None else (case,),
+    )
     found = {metric.name: metric.find(drive) for metric in (*built_in(), *own)}
     scored = [event for metric in (*built_in(), *own) if metric.penalties for event in found[metric.name]]
     extra = math.prod(

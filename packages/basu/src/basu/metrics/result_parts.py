@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from typing_extensions import NotRequired, TypedDict
 
-from basu.conditions import Track
+from basu.conditions import LeaderboardTrack, Track
 from basu.metrics.infraction import CollisionKind
 from basu.metrics.json_schema import Value, closed
 
@@ -107,12 +107,22 @@ class TrafficPart(TypedDict):
 
 
 @closed
+class LeaderboardTrackPart(TypedDict):
+    """The track of the CARLA leaderboard that the agent's sensors were held to."""
+
+    track: LeaderboardTrack
+    sensors: Annotated[list[str], "types of the admitted sensors, in the order of the set"]
+    refused: Annotated[str | None, "the rule that the set broke"]
+
+
+@closed
 class AccessPart(TypedDict):
     """The agent's access to the simulator."""
 
     track: Annotated[Track, "what it learned of others: scores of different tracks are not compared"]
     open: Annotated[bool, "no gate stood between it and the simulator: the score is not comparable"]
     refused: Annotated[dict[str, Annotated[int, Value(low=1)]], "how often the gate refused each function"]
+    leaderboard: NotRequired[LeaderboardTrackPart]
 
 
 @closed
@@ -263,6 +273,7 @@ class ScenarioPart(TypedDict):
     actors: list[ActorPart]
     things: list[dict[str, Any]]
     timeout_s: Amount
+    timed_out: NotRequired[Annotated[bool, "whether its time was used up; absent in results of earlier versions"]]
     scenarios_file: Annotated[str, "file and line"]
 
 

@@ -5,7 +5,7 @@ Each of these alone decides against a drive, as nuPlan multiplies its scores:
 - a collision at fault
 - a red light run, a stop sign missed, or speeding
 - the wrong way, a lane of oncoming traffic without an obstacle to pass, or a stretch off the road
-- a failed scenario of its route
+- a failed scenario of its route, or one that the agent waited out until its time was used up
 - a route not driven to its end
 
 What went wrong on the road stays a failure, whatever ends the run afterwards. A run that something other than the
@@ -78,6 +78,11 @@ def success(
     wrong = _wrong(history, infractions) if driven and history is not None else []
     wrong += [
         f"scenario {row['id']} ({row['scenario']}): {row['message']}" for row in scenarios if row["verdict"] in FAILED
+    ]
+    wrong += [
+        f"scenario {row['id']} ({row['scenario']}): not over after its {row['timeout_s']:g} s"
+        for row in scenarios
+        if row.get("timed_out") and row["verdict"] == NOT_EXERCISED
     ]
     ended = (
         [] if outcome.status is Status.COMPLETED else [f"{NOT_COMPLETED} ({outcome.status.value}): {outcome.message}"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from basu.conditions import Track
+from basu.conditions import SENSORS, LeaderboardTrack, Track
 from basu.errors import UserError
 from basu.settings.option import Settings, option
 
@@ -41,6 +41,12 @@ class AgentOptions(Settings):
         metavar="TRACK",
         default_text="as config() asks, else world",
     )
+    leaderboard_track: LeaderboardTrack | None = option(
+        None,
+        "hold the agent's sensors to the rules of a track of the CARLA leaderboard 2.x; implies --track sensors",
+        metavar="TRACK",
+        is_rare=True,
+    )
     open: bool = option(
         False,
         "connect the agent to the simulator itself, without the gate, for development; the score is marked "
@@ -52,8 +58,15 @@ class AgentOptions(Settings):
         """Check the options of the agent's process.
 
         Raises:
-            UserError: there is to be none, and its memory is to be limited, or its writing widened.
+            UserError: there is to be none, and its memory is to be limited, or its writing widened; or the agent is to
+                know more than a track of the leaderboard allows.
         """
+        if self.leaderboard_track is not None and (self.open or self.track not in (None, SENSORS)):
+            given = "--open" if self.open else f"--track {self.track}"
+            raise UserError(
+                f"--leaderboard-track {self.leaderboard_track} gives the agent its sensors alone, and {given} gives it "
+                "more; leave one of them out"
+            )
         if self.in_process and self.agent_writes:
             raise UserError(
                 "--agent-writes widens what the agent's own process may do, and --in-process gives it none; choose one"

@@ -220,6 +220,7 @@ def new_agents(
         person=person,
         seed=seed,
         track=options.track,
+        leaderboard_track=options.leaderboard_track,
         is_open=options.open,
         has_conditions=has_conditions,
     )
@@ -277,11 +278,13 @@ def sensor_set(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """The sensors that the agent wants, by its own method or by a file."""
     own = agents.own_sensors()
     if own is not None:
-        return SensorSet(own, f"sensors() of {loaded.name}")
+        source = f"sensors() of {loaded.name}"
+        return SensorSet(agents.admitted(own, source) if own else own, source)
     if agents.config.sensors is None:
         return SensorSet((), "")
     path = find(agents.config.sensors, "sensor file", loaded.file)
-    return SensorSet(read_sensors(path), f"sensor file {path}")
+    source = f"sensor file {path}"
+    return SensorSet(agents.admitted(read_sensors(path), source), source)
 
 
 def _label(description: RouteDescription, routes: int) -> str:

@@ -220,6 +220,12 @@ def test_walkers_and_parked_cars_are_no_traffic(kind: str) -> None:
     assert too_slow(among(OWN, (kind, speeds))) == ()
 
 
+def test_actors_of_scenarios_are_no_traffic() -> None:
+    history = among(OWN, ("vehicle.ford.ambulance", at(20.0, 25.0)))
+    assert len(too_slow(history)) == 4
+    assert too_slow(history, frozenset(history.facts.actor_types)) == ()
+
+
 def test_frames_without_traffic_do_not_count() -> None:
     own = [*at(2.0, 5.0), *at(10.0, 19.0)]
     seen = [*at(float("nan"), 5.0), *at(10.0, 19.0)]

@@ -3,8 +3,8 @@
 ``Seen`` holds the faces of all meshes in one table and their poses. ``Look`` adds the pose of one sensor.
 """
 
-from collections.abc import Hashable, Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from collections.abc import Callable, Hashable, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,9 @@ from linden.protocol.values.episode import WeatherParameters
 from linden.protocol.values.space import Transform
 from linden.scenery.mesh import Mesh
 from linden.sensors.casting.caster import Caster, Instances
+
+if TYPE_CHECKING:
+    from linden.sensors.camera.strokes import Strokes
 
 F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
@@ -119,6 +122,8 @@ class SensorLook(NamedTuple):
     """Of the measurement, counted from the sensor's first, which is 0."""
     interval_s: float
     """Time since the last measurement; that of the frame for the first."""
+    strokes: "Callable[[frozenset[int]], Strokes] | None" = None
+    """Returns what a camera of lines draws without the actors given; None where there is no episode."""
 
 
 class LookingSensor(Protocol):

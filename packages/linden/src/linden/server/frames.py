@@ -35,6 +35,7 @@ from linden.simulation.actor_table import ActorRecord
 from linden.world import World
 
 _KINDS = {
+    "sensor.camera.cosmos_visualization": SensorType.CAMERA_COSMOS,
     "sensor.camera.depth": SensorType.CAMERA_DEPTH,
     "sensor.camera.normals": SensorType.CAMERA_NORMALS,
     "sensor.camera.optical_flow": SensorType.CAMERA_OPTICAL_FLOW,

@@ -55,10 +55,16 @@ def level_boxes(episode: Episode, tag: int) -> list[BoundingBox]:
         for row in np.flatnonzero(present)
         if tag in (scene.boxes["tag"][row], SemanticTag.ANY)
     ]
+    return found + [box for found_tag, box in body_boxes(episode) if tag in (found_tag, SemanticTag.ANY)]
+
+
+def body_boxes(episode: Episode) -> list[tuple[int, BoundingBox]]:
+    """Return tag and box, in the world, of every actor with a body; boxes carry the actors' ids."""
+    found = []
     for record in episode.actors:
-        if record.slot != NO_BODY and tag in (_tag(record), SemanticTag.ANY):
+        if record.slot != NO_BODY:
             centre, pose = _centre(episode, record)
-            found.append(BoundingBox(centre, record.box.extent, pose.rotation, record.id))
+            found.append((_tag(record), BoundingBox(centre, record.box.extent, pose.rotation, record.id)))
     return found
 
 

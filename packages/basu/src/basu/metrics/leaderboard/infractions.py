@@ -35,6 +35,8 @@ from basu.metrics.leaderboard.rules import Kind, LeaderboardEvent, Version
 from basu.metrics.stretches import total_m
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from basu.records.history import Collision, History
@@ -153,12 +155,15 @@ LAST_AT = 0.95  # of the route: a drive that ends beyond it has its last quarter
 MOVED_MPS = 0.1
 
 
-def too_slow(history: History) -> tuple[LeaderboardEvent, ...]:
-    """One event for each quarter of the route on which the vehicle was slower than the traffic."""
+def too_slow(history: History, cast: Collection[int] = ()) -> tuple[LeaderboardEvent, ...]:
+    """One event for each quarter of the route on which the vehicle was slower than the traffic.
+
+    ``cast`` are the actors of scenarios, which are no traffic: the leaderboard takes its background vehicles alone.
+    """
     route, frames = history.facts.route, history.frames
     farthest_m = passed_m(history)
     quarter_m = route.length_m / CHECKPOINTS
-    traffic_mps = _traffic_mps(history)
+    traffic_mps = _traffic_mps(history, cast)
     speed_mps = history.speed_mps()
     first, begun_m = 0, 0.0
     found = []
@@ -184,11 +189,12 @@ def _judged(traffic_mps: NDArray[np.float64], speed_mps: NDArray[np.float64], ti
     return LeaderboardEvent(kind=Kind.MIN_SPEED, tick=tick, percentage=percentage) if percentage < 100.0 else None
 
 
-def _traffic_mps(history: History) -> NDArray[np.float64]:
+def _traffic_mps(history: History, cast: Collection[int]) -> NDArray[np.float64]:
     """(T,) mean speed of the vehicles near in each frame, nan where there are none."""
     others = history.others
     speed_mps = np.hypot(others["velocity_x_mps"], others["velocity_y_mps"])
-    vehicles = [actor for actor, what in history.facts.actor_types.items() if what.startswith("vehicle.")]
+    types = history.facts.actor_types.items()
+    vehicles = [actor for actor, what in types if what.startswith("vehicle.") and actor not in cast]
     traffic = np.isin(others["id"], np.unique(others["id"][speed_mps > MOVED_MPS])) & np.isin(others["id"], vehicles)
     count = np.bincount(others["tick"][traffic], minlength=len(history.frames))
     summed = np.bincount(others["tick"][traffic], weights=speed_mps[traffic], minlength=len(history.frames))

@@ -71,7 +71,6 @@ POINTS: Mapping[Kind, float] = {
     Kind.YIELD_EMERGENCY: 0.4,
     Kind.MIN_SPEED: 0.4,
 }
-SCENARIOS_ONLY = (Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY)  # no such event without the leaderboard's scenarios
 
 
 def penalty(version: Version, events: Iterable[LeaderboardEvent]) -> float:

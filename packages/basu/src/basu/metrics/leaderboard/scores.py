@@ -1,7 +1,7 @@
 """The leaderboard's three figures of a drive: route completion, infraction penalty, and their product.
 
-What the leaderboard sees through its scenarios cannot be in a record without them: scenario timeouts and emergency
-vehicles that want to pass count as not having happened, and are named as not measured. Stop signs are judged by the
+Scenario timeouts and emergency vehicles that want to pass are judged by the scenarios of the drive. A drive without
+such scenarios counts as one in which neither happened, and names both as not measured. Stop signs are judged by the
 rule of ``metrics.stop_signs``: the leaderboard's needs the simulator's trigger volumes, which are no part of the
 record; its threshold of 0.1 m/s is the same.
 """
@@ -14,13 +14,16 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.json_schema import integer, listing, mapping, number, record, text
 from basu.metrics.leaderboard.ending import LeaderboardEnding, completion_percent, ending
 from basu.metrics.leaderboard.infractions import collisions, outside_lanes, too_slow
-from basu.metrics.leaderboard.rules import SCENARIOS_ONLY, Kind, LeaderboardEvent, Version, penalty
+from basu.metrics.leaderboard.rules import Kind, LeaderboardEvent, Version, penalty
+from basu.metrics.leaderboard.scenario_events import cast_of, not_measured, scenario_events
 from basu.metrics.path_following import has_arrived
 from basu.metrics.red_lights import red_lights
 from basu.metrics.registry import Column, Drive, Metric, register, shown
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
@@ -38,12 +41,12 @@ class LeaderboardScores:
     not_measured: tuple[Kind, ...]  # counted as not having happened
 
 
-def leaderboard_scores(history: History) -> tuple[LeaderboardScores, ...]:
-    """The scores of every version, from the record alone."""
-    return tuple(_scores(history, version) for version in Version)
+def leaderboard_scores(history: History, scenarios: Sequence[Mapping[str, Any]] = ()) -> tuple[LeaderboardScores, ...]:
+    """Return the scores of every version; ``scenarios`` are the drive's, as ``result.json`` has them."""
+    return tuple(_scores(history, version, scenarios) for version in Version)
 
 
-def _scores(history: History, version: Version) -> LeaderboardScores:
+def _scores(history: History, version: Version, scenarios: Sequence[Mapping[str, Any]]) -> LeaderboardScores:
     """The scores of one version."""
     end = ending(history, version)
     counted = replace(
@@ -53,7 +56,9 @@ def _scores(history: History, version: Version) -> LeaderboardScores:
         collisions=tuple(event for event in history.collisions if event.tick <= end.tick),
         lane_invasions=tuple(event for event in history.lane_invasions if event.tick <= end.tick),
     )
-    events = _events(counted, version)
+    events = _events(counted, version, cast_of(scenarios))
+    if version is not Version.V1_0:
+        events = (*events, *scenario_events(counted, scenarios))
     if end.by is not None:
         events = (*events, LeaderboardEvent(kind=end.by, tick=end.tick))
     completion = _completion(counted, end, version)
@@ -65,18 +70,18 @@ def _scores(history: History, version: Version) -> LeaderboardScores:
         infraction_penalty=factor,
         events=tuple(sorted(events, key=lambda event: (event.tick, event.kind.value))),
         ended_by=end.by,
-        not_measured=() if version is Version.V1_0 else SCENARIOS_ONLY,
+        not_measured=() if version is Version.V1_0 else not_measured(scenarios),
     )
 
 
-def _events(history: History, version: Version) -> tuple[LeaderboardEvent, ...]:
+def _events(history: History, version: Version, cast: Collection[int]) -> tuple[LeaderboardEvent, ...]:
     """Everything that a version would have written down, without what ends a drive."""
     return (
         *collisions(history, version),
         *(LeaderboardEvent(kind=Kind.RED_LIGHT, tick=found.tick) for found in red_lights(history)),
         *(LeaderboardEvent(kind=Kind.STOP, tick=found.tick) for found in stop_signs(history)),
         *outside_lanes(history, version),
-        *(() if version is Version.V1_0 else too_slow(history)),
+        *(() if version is Version.V1_0 else too_slow(history, cast)),
     )
 
 
@@ -122,7 +127,8 @@ class Leaderboard(Metric):
 
     def compute(self, drive: Drive) -> dict[str, Any]:
         """The scores of each version with what they come from."""
-        return {scores.version.value: _row(drive.history, scores) for scores in leaderboard_scores(drive.history)}
+        found = leaderboard_scores(drive.history, drive.scenarios)
+        return {scores.version.value: _row(drive.history, scores) for scores in found}
 
     def lines(self, result: JudgedRun) -> list[str]:
         """A line for each version."""

@@ -27,6 +27,7 @@ from basu.scenarios.criteria.surrogate_measures import (
     reported_always,
 )
 from basu.scenarios.criteria.traffic_rules import HeedsRedLights, HeedsStopSigns, KeepsSpeed, MinimumSpeed
+from basu.scenarios.criteria.yielding import YieldsToEmergencyVehicle
 
 __all__ = [
     "Arrives",
@@ -51,6 +52,7 @@ __all__ = [
     "Regains",
     "StandingThing",
     "StoppedFor",
+    "YieldsToEmergencyVehicle",
     "margins_of",
     "reported_always",
 ]

@@ -7,6 +7,7 @@ from basu.scenarios.triggers.along_route import (
     EgoEntersJunction,
     EgoLeavesJunction,
     EgoPasses,
+    PassesEgo,
     TimeToArrival,
     TimeToRest,
 )
@@ -30,6 +31,7 @@ __all__ = [
     "InRegion",
     "Near",
     "NearPlace",
+    "PassesEgo",
     "Polygon",
     "Slower",
     "StandsStill",

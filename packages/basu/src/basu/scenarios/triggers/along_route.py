@@ -78,6 +78,21 @@ class EgoBeyond(Trigger):
         return f"ego {clear_m:.1f} m past {self.actor}" if clear_m >= self.by_m else None
 
 
+class PassesEgo(Trigger):
+    """An actor's tail is ``by_m`` ahead of the ego's bumper."""
+
+    def __init__(self, actor: str, by_m: float) -> None:
+        super().__init__(f"{actor} {by_m:g} m ahead of the ego")
+        self.actor, self.by_m = actor, by_m
+
+    def has_come(self) -> str | None:
+        """How far, once it is."""
+        ego, other = self.stage.ego, self.stage.body(self.actor)
+        ahead_m = (other.x_m - ego.x_m) * math.cos(ego.yaw_rad) + (other.y_m - ego.y_m) * math.sin(ego.yaw_rad)
+        clear_m = ahead_m - ego.half_length_m - other.half_length_m
+        return f"{clear_m:.1f} m ahead" if clear_m >= self.by_m else None
+
+
 class TimeToArrival(Trigger):
     """The ego, at the speed it has, needs no more than ``seconds`` to a place ``s_m`` along its route."""
 

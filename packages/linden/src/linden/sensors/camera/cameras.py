@@ -140,7 +140,30 @@ class EventCamera:
         self._retina = None
 
 
+class CosmosCamera(Camera):
+    """``sensor.camera.cosmos_visualization``: lane lines, signs and boxes of actors, in colours on black.
+
+    Attributes:
+        ignored: actors that it does not show (``set_ignored_vehicles``).
+    """
+
+    kind = "lines"
+    ignored: frozenset[int] = frozenset()
+
+    def expect(self, look: SensorLook) -> None:
+        """Begin nothing: no ray is cast."""
+
+    def measure(self, look: SensorLook) -> Image:
+        """Return the picture of a frame; without an episode it is black."""
+        from linden.sensors.camera.strokes import Strokes, draw  # noqa: PLC0415 - compiled code, as the renderer
+
+        spec = self.picture.spec
+        strokes = Strokes.none() if look.strokes is None else look.strokes(self.ignored)
+        return Image(self.blueprint, spec.fov_deg, draw(spec, look.pose, strokes))
+
+
 CAMERAS: dict[str, type[Camera] | type[EventCamera]] = {
+    "sensor.camera.cosmos_visualization": CosmosCamera,
     "sensor.camera.depth": DepthCamera,
     "sensor.camera.dvs": EventCamera,
     "sensor.camera.instance_segmentation": InstanceCamera,

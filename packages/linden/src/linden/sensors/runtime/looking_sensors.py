@@ -1,6 +1,7 @@
 """The sensors that cast rays: their constructors, their schedules, their readings in a frame."""
 
 from collections.abc import Callable, Container, Hashable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.space import Transform
 from linden.sensors.camera.cameras import CAMERAS
+from linden.sensors.camera.strokes import Strokes, joined
 from linden.sensors.devices.attributes import Schedule, advance, interval_s
 from linden.sensors.devices.lidar import Lidar, SemanticLidar
 from linden.sensors.devices.obstacle import ObstacleDetector
@@ -60,6 +62,7 @@ class ScheduledSensor:
             carrier_id=sensor.parent_id,
             number=number,
             interval_s=passed_s,
+            strokes=partial(now.strokes, episode),
         )
 
 
@@ -70,6 +73,15 @@ class SensorFrame:
         self.sensor_scene, self.frame, self.frame_s = sensor_scene, frame, frame_s
         self.shared: dict[Hashable, object] = {}
         self._seen: Seen | None = None
+
+    def strokes(self, episode: "Episode", ignored: frozenset[int]) -> Strokes:
+        """Return the lines of the map and of the actors but for the ignored ones, once a frame for each such set."""
+        key = (Strokes, ignored)
+        if key not in self.shared:
+            from linden.sensors.runtime.outlines import actor_strokes  # noqa: PLC0415 - few servers draw lines
+
+            self.shared[key] = joined([self.sensor_scene.standing_strokes(episode), actor_strokes(episode, ignored)])
+        return self.shared[key]  # type: ignore[return-value] # put there above
 
     def seen(self, episode: "Episode") -> Seen:
         """Return the moment as it is seen, the bodies posed."""

@@ -40,7 +40,6 @@ MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", 
 
 NOT_YET = {
     "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
-    "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
 }
 """Blueprints without a sensor behind them, by the beginning of their ids, and the reason."""
 

@@ -20,6 +20,7 @@ from linden.sensors.view import NO_ACTOR_FROM, Seen
 
 if TYPE_CHECKING:
     from linden.scenery.actors.actor_meshes import BlueprintMeshes
+    from linden.sensors.camera.strokes import Strokes
     from linden.simulation.episode import Episode
 
 U32 = NDArray[np.uint32]
@@ -71,6 +72,7 @@ class SensorScene:
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
         self._light_states = LightStateCache()
+        self._standing_strokes: tuple[LoadedMap, Scene, NDArray[np.bool_], Strokes, Strokes] | None = None
         self._frame = -1
         self._instances: Instances | None = None
 
@@ -134,6 +136,22 @@ class SensorScene:
             weather=episode.weather,
             now_s=episode.elapsed_s,
         )
+
+    def standing_strokes(self, episode: "Episode") -> "Strokes":
+        """Return the lines of a map and of what stands on it, made anew where the map or what stands there changed.
+
+        On a town that takes seconds, which the first picture of a camera of lines waits for.
+        """
+        loaded, scene, present = episode.map, episode.surroundings.scene, episode.surroundings.present
+        kept = self._standing_strokes
+        if kept is None or kept[0] is not loaded or kept[1] is not scene or not np.array_equal(kept[2], present):
+            from linden.sensors.camera.strokes import joined  # noqa: PLC0415 - as in standing_on
+            from linden.sensors.runtime.outlines import map_strokes, scenery_strokes  # noqa: PLC0415 - likewise
+
+            of_map = kept[3] if kept is not None and kept[0] is loaded else map_strokes(loaded.text, loaded.ground)
+            strokes = joined([of_map, scenery_strokes(scene, present)])
+            self._standing_strokes = kept = loaded, scene, present.copy(), of_map, strokes
+        return kept[4]
 
     def _all_bodies(self) -> "BlueprintMeshes":
         return self._bodies_coming().result()

@@ -6,6 +6,7 @@ Source of names: LibCarla 0.9.16.
 from linden.errors import Refusal
 from linden.protocol.wire.decode import U32
 from linden.protocol.wire.stream import Token
+from linden.sensors.camera.cameras import CosmosCamera
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import method
 from linden.simulation.actor_table import ActorRefusal
@@ -54,15 +55,18 @@ def send(context: Context, actor_id: U32, text: str) -> None:
 
 @method("set_ignored_vehicles")
 def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]) -> None:
-    """Check which vehicles a sensor shall not show; in 0.9.16 the cosmos camera alone asks, and it is not here."""
+    """Set which vehicles a sensor does not show; as in CARLA, ``sensor.camera.cosmos_visualization`` alone asks."""
     check_sensor(context, actor_id)
     for vehicle_id in vehicle_ids:
         if "vehicle" not in context.world.episode.actors.get(vehicle_id).description.id:
             raise ActorRefusal("Actor does not match the expected type", vehicle_id)
-    if vehicle_ids:
+    looking = context.world.sensors.looking.get(actor_id)
+    if looking is not None and isinstance(looking.sensor, CosmosCamera):
+        looking.sensor.ignored = frozenset(vehicle_ids)
+    elif vehicle_ids:
         context.warn_once(
-            "set_ignored_vehicles: as in CARLA 0.9.16, only sensor.camera.cosmos_visualization would leave vehicles "
-            "out; the sensors here go on seeing them"
+            "set_ignored_vehicles: as in CARLA 0.9.16, only sensor.camera.cosmos_visualization leaves vehicles out; "
+            "the other sensors go on seeing them"
         )
 
 

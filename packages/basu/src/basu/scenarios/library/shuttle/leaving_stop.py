@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, lanes_apart_m
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
-from basu.scenarios.triggers import Faster, Trigger
+from basu.scenarios.triggers import Faster, PassesEgo
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,21 +26,6 @@ EGO_HALF_LENGTH_M = 2.0
 OUT_M, IN_M = 10.0, 12.0  # on which it gets out of the lane, and back in
 HURRY = FollowerLimits(accelerate_mps2=4.0, brake_mps2=4.0)
 SLOW_S = 4.0  # that it crawls
-
-
-class Past(Trigger):
-    """The car's tail is so far ahead of the ego's bumper."""
-
-    def __init__(self, actor: str, by_m: float) -> None:
-        super().__init__(f"{actor} {by_m:g} m ahead of the ego")
-        self.actor, self.by_m = actor, by_m
-
-    def has_come(self) -> str | None:
-        """How far, once it is."""
-        ego, other = self.stage.ego, self.stage.body(self.actor)
-        ahead_m = (other.x_m - ego.x_m) * math.cos(ego.yaw_rad) + (other.y_m - ego.y_m) * math.sin(ego.yaw_rad)
-        clear_m = ahead_m - ego.half_length_m - other.half_length_m
-        return f"{clear_m:.1f} m ahead" if clear_m >= self.by_m else None
 
 
 class LeavingStop(Scenario):
@@ -87,7 +71,7 @@ class LeavingStop(Scenario):
         return InTurn(
             ChangeLane("car", lane, -apart_m, over_m=OUT_M, speed_mps=speed_mps, limits=HURRY, name="car pulls out"),
             Meanwhile(
-                Past("car", self.number("gap")),
+                PassesEgo("car", self.number("gap")),
                 DriveAlong("car", lane.beside(-apart_m), speed_mps, accelerate_mps2=HURRY.accelerate_mps2),
                 name="car overtakes",
             ),
