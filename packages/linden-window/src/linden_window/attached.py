@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from linden.server.rpc.context import Follower
 from linden_window.control import carry_out
+from linden_window.errands import Errands
 from linden_window.link import PageLink, StartingLink
 from linden_window.observer import WorldObserver
 
@@ -33,16 +34,17 @@ class AttachedWindow:
         self._link = link = self._starting.ready()
         context = server.context
         observer = WorldObserver(context.world, link)
+        errands = Errands(context.world, lambda text: link.note({"type": "says", "text": text}))
 
         def read(clock: "FrameClock") -> bool:
             for order in link.orders():
                 if order["order"] == "pages":
                     observer.has_pages(order["count"])
-                elif order["order"] != "left" and (answer := carry_out(order, context, clock)):
+                elif order["order"] != "left" and (answer := carry_out(order, context, clock, errands)):
                     link.note({"type": "says", "text": answer})
             return link.is_open
 
-        server.follow(Follower("window", lambda _measured: observer.after_frame()), link.fileno(), read)
+        server.follow(Follower("window", lambda _measured: observer.after_frame(), errands.before_frame), link.fileno(), read)
         observer.after_frame()  # the map, so that its scene is ready before the first page
         return link.address
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import shutil
 import sys
+import time
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
+    from playwright.sync_api import Page
+
 PICTURES_PER_S = 10
 SIZE_PX = 1280, 720
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -27,11 +30,16 @@ SWITCHES = (
     "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 )  # fmt: skip
-_SCENE_MS = 600_000.0  # the processor draws, and others may use it
-_IS_READY = """globalThis.page?.replay.isOn && page.poses.length > 0
-    && (page.isFlat || (page.world.loaded > 0 && page.world.waiting.length + page.world.loading === 0))"""
-_SEEK = """(t) => new Promise((done) => { page.replay.seek(t);
-    requestAnimationFrame(() => requestAnimationFrame(() => { page.figures(); done(); })); })"""
+PATIENCE_S = 180.0
+"""A film fails if nothing new was loaded or drawn for so long; a busy machine may take any time in all."""
+_POLL_S = 0.5
+_PROGRESS = """() => { const page = globalThis.page;
+    if (!page) return [false, document.readyState];
+    const {loaded, loading, waiting} = page.world;
+    const isDone = page.replay.isOn && (page.isFlat || (loaded > 0 && waiting.length + loading === 0));
+    return [isDone, [page.replay.isOn, page.connection.bytes, loaded, page.pictures].join()]; }"""
+_SHOW = """([t, dt, limit]) => Promise.race([
+    page.show(t, dt), new Promise((_, fail) => setTimeout(() => fail(new Error("no picture was drawn")), limit))])"""
 
 
 def check_film(file: Path) -> None:
@@ -75,18 +83,43 @@ def _pictures(address: str, times_s: list[float]) -> Iterator[bytes]:
 
     width, height = SIZE_PX
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_browser(), args=list(SWITCHES))
+        browser = playwright.chromium.launch(
+            executable_path=_browser(), args=list(SWITCHES), timeout=1000.0 * PATIENCE_S
+        )
         try:
             page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True)
-            page.goto(f"{address}?view=chase&film")
-            page.wait_for_function(_IS_READY, timeout=_SCENE_MS)
+            page.set_default_timeout(1000.0 * PATIENCE_S)
+            page.goto(f"{address}?view=chase&film", wait_until="commit")
+            _wait_until_loaded(page)
             for t_s in times_s:
-                page.evaluate(_SEEK, t_s)
+                page.evaluate(_SHOW, [t_s, 1.0 / PICTURES_PER_S, 1000.0 * PATIENCE_S])
                 yield page.screenshot(type="jpeg", quality=92)
         except Error as error:
-            raise UserError(f"the browser could not show the run: {error.message.splitlines()[0]}") from error
+            raise UserError(
+                f"the film is not complete: {error.message.splitlines()[0]}. The browser showed nothing new for "
+                f"{PATIENCE_S:.0f} s, or has ended; try again, with fewer other programs or a part of the run "
+                "(--film-from, --film-to)"
+            ) from error
         finally:
             browser.close()
+
+
+def _wait_until_loaded(page: Page) -> None:
+    """Wait until the page has the record and the scenery around its first moment.
+
+    Raises:
+        UserError: nothing new was loaded or drawn for ``PATIENCE_S``.
+    """
+    before, since_s = None, time.monotonic()
+    while True:
+        is_done, progress = page.evaluate(_PROGRESS)
+        if is_done:
+            return
+        if progress != before:
+            before, since_s = progress, time.monotonic()
+        elif time.monotonic() - since_s > PATIENCE_S:
+            raise UserError(f"the page of the film loaded nothing new for {PATIENCE_S:.0f} s; try again")
+        time.sleep(_POLL_S)
 
 
 def _encode(file: Path, pictures: Iterable[bytes]) -> None:

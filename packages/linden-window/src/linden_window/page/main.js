@@ -19,6 +19,8 @@ import { World } from "./world.js";
 
 const NARROW_PX = 640;
 const FIGURES_MS = 200;
+/** How much of an actor's path is shown, s of simulated time. */
+const PATH_S = 60;
 const NO_WEBGL = "This browser has no WebGL, so the page shows a map. Turn on hardware acceleration, or use another browser.";
 const BUILDING = "The scenery of this map is being made, once on this machine; that takes some ten seconds.";
 
@@ -69,7 +71,11 @@ class Page {
     this.readings = null;
     /** @type {LineBasicMaterial[]} of the lines of signs and lights */
     this.lines = [];
+    this.path = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xd0421b }));
+    this.path.frustumCulled = false;
+    this.world.scene.add(this.path);
     this.keepsPicture = false;
+    this.isFilmed = false;
     this.panes = new Panes((order) => this.connection.send(order));
     this.connection = new Connection(
       (note) => this.note(note), (frame) => this.arrived(frame), (pane) => this.panes.take(pane), (sentence) => say(sentence, true),
@@ -86,7 +92,7 @@ class Page {
     this.flat(this.isFlat);
     const view = parameters.get("view");
     if (view !== null && VIEWS.includes(view)) this.view(view);
-    setInterval(() => this.figures(), FIGURES_MS);
+    if (!parameters.has("film")) setInterval(() => this.figures(), FIGURES_MS);
     requestAnimationFrame(() => this.draw());
   }
 
@@ -286,6 +292,11 @@ class Page {
     const at = new Vector2((event.clientX / innerWidth) * 2 - 1, 1 - (event.clientY / innerHeight) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, camera);
+    if (this.control.wantsGoal) {
+      const [hit] = ray.intersectObject(this.world.tiles, true);
+      if (hit) this.control.sendTo(hit.point.x, hit.point.z);
+      return;
+    }
     let best = 0;
     let nearest = Infinity;
     for (const pose of this.poses) {
@@ -307,6 +318,7 @@ class Page {
   clickMap(event) {
     const x = this.map.centre[0] + (event.clientX - innerWidth / 2) * this.map.metresPerPixel;
     const y = this.map.centre[1] + (event.clientY - innerHeight / 2) * this.map.metresPerPixel;
+    if (this.control.wantsGoal) return this.control.sendTo(x, y);
     const reach = Math.max(3, 14 * this.map.metresPerPixel);
     const near = this.poses
       .filter((pose) => ["vehicle", "walker"].includes(this.actors.known.get(pose.id)?.kind ?? ""))
@@ -325,9 +337,30 @@ class Page {
 
   draw() {
     requestAnimationFrame(() => this.draw());
+    if (this.isFilmed) return;
     const now = performance.now();
     const dt = Math.min(0.2, (now - this.before) / 1000);
     this.before = now;
+    this.picture(now, dt);
+  }
+
+  /**
+   * Draw one moment of a record for a film; from the first one on nothing is drawn by itself, so that the pictures
+   * depend on simulated time only. @param {number} t @param {number} dt since the last picture, in s
+   */
+  async show(t, dt) {
+    this.isFilmed = true;
+    this.replay.seek(t);
+    do {
+      await new Promise((done) => requestAnimationFrame(done));
+      this.picture(performance.now(), dt);
+      dt = 0;
+    } while (!this.isFlat && (this.world.waiting.length + this.world.loading > 0 || this.actors.isLoading));
+    this.figures();
+  }
+
+  /** @param {number} now in ms @param {number} dt since the last picture, in s */
+  picture(now, dt) {
     const clock = this.replay.isOn ? this.replay.advance(dt) : now / 1000 - 1.6 * this.timeline.interval;
     const t = this.timeline.time(clock);
     this.poses = this.timeline.poses(clock);
@@ -406,7 +439,7 @@ class Page {
     const lines = [{ name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` }];
     if (this.readings === null) lines.push({ name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` });
     if (this.weather && this.readings === null) lines.push({ name: "weather", value: this.weather });
-    lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
+    if (!this.isFilmed) lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
     if (!this.replay.isOn) lines.push({ name: "data", value: `${(this.bytesPerSecond / 1000).toFixed(0)} kB/s` });
     list(element("figures"), lines);
     this.actorFigures();
@@ -419,14 +452,27 @@ class Page {
     const pose = this.followed();
     const actor = pose === null ? undefined : this.actors.known.get(pose.id);
     box.hidden = actor === undefined;
+    const isStreet = actor !== undefined && pose !== null && ["vehicle", "walker", "prop"].includes(actor.kind);
+    this.control.choose(isStreet ? { id: pose.id, x: pose.x, y: pose.y, yaw: pose.yaw, isVehicle: actor.kind === "vehicle" } : null);
+    this.showPath(pose);
     if (actor === undefined || pose === null) return;
     if (this.readings !== null && pose.id === this.ego && !this.replay.isOn) return showReadings(box, this.readings);
     box.className = "";
     const heading = document.createElement("h2");
     heading.textContent = actor.type;
     const lines = document.createElement("div");
-    list(lines, aboutActor(actor, pose));
+    const sensors = [...this.actors.known.values()].filter((each) => each.kind === "sensor" && each.parent === actor.id);
+    list(lines, aboutActor(actor, pose, sensors));
     box.replaceChildren(heading, lines);
+  }
+
+  /** Show the way that an actor has come, of the vehicle under test from the beginning. @param {Pose | null} pose */
+  showPath(pose) {
+    const points = pose === null || pose.id === this.ego ? [] : this.timeline.path(pose.id, PATH_S);
+    this.map.chosenPath = points;
+    this.path.geometry.dispose();
+    this.path.geometry = new BufferGeometry().setFromPoints(points.map(([x, y, z]) => new Vector3(x, z + 0.3, y)));
+    this.path.visible = points.length > 1;
   }
 
   /** @param {number} t */

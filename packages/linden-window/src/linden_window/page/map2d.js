@@ -36,6 +36,8 @@ export class Map2d {
     this.route = [];
     /** @type {number[][]} the way that the vehicle under test has driven */
     this.trail = [];
+    /** @type {number[][]} the way that the chosen actor has come */
+    this.chosenPath = [];
     /** @type {Control[]} */
     this.controls = [];
     /** @type {number[]} */
@@ -97,6 +99,7 @@ export class Map2d {
     const pixel = this.metresPerPixel;
     if (this.route.length) this.path(this.route, style.getPropertyValue("--planned"), Math.max(1.2, 4 * pixel));
     if (this.trail.length) this.path(this.trail, style.getPropertyValue("--driven"), Math.max(0.4, 2 * pixel));
+    if (this.chosenPath.length > 1) this.path(this.chosenPath, FOCUS, Math.max(0.3, 1.5 * pixel));
     this.controls.forEach((control, index) => {
       this.path(endsOf(control, this.half), colourOf(control, this.signals[index]), Math.max(0.5, 4 * pixel));
     });

@@ -103,8 +103,8 @@ export function help(drives) {
   dialog.showModal();
 }
 
-/** @param {Actor} actor @param {Pose} pose @returns {Line[]} */
-export function aboutActor(actor, pose) {
+/** @param {Actor} actor @param {Pose} pose @param {Actor[]} sensors on the actor @returns {Line[]} */
+export function aboutActor(actor, pose, sensors) {
   /** @type {Line[]} */
   const lines = [{ name: "id", value: String(actor.id) }];
   if (actor.role) lines.push({ name: "role", value: actor.role });
@@ -117,6 +117,7 @@ export function aboutActor(actor, pose) {
       { name: "steer", value: `${((pose.steer * 180) / Math.PI).toFixed(0)}°` },
     );
   }
+  if (sensors.length) lines.push({ name: "sensors", value: sensors.map((each) => each.type.replace(/^sensor\./, "")).join(", ") });
   lines.push({ name: "place, m", value: `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}, ${pose.z.toFixed(1)}` });
   return lines;
 }
