@@ -1,10 +1,6 @@
 """Claims about drives in a real browser: a person at the keyboard and at a gamepad, and the slider of a record."""
 
-import re
-import subprocess
-import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -16,36 +12,13 @@ from basu_fixtures import SHORT_ROUTE
 from browsers import running_browser
 from fakes.run_records import crashing, record, written
 from opendrive_texts import SIGNS_AND_LIGHTS
+from page_drives import PAD, WHEEL, started
 from window_pages import WAIT_MS, page_of
-
-BASU = [sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())"]
-PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],
-  buttons: Array.from({{length: 17}}, (_, at) => ({{value: at === 7 ? {throttle} : at === 6 ? {brake} : 0}}))}}]"""
-
-WHEEL = """navigator.getGamepads = () => [{{id: "G29 Driving Force Racing Wheel", connected: true, mapping: "",
-  axes: [{steer}, 0, {throttle}, {brake}, 0, 0], buttons: Array.from({{length: 25}}, () => ({{value: 0}}))}}]"""
-
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with running_browser() as found:
         yield found
-
-
-@contextmanager
-def started(*words: str | Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """Run a command until it prints the page's address."""
-    process = subprocess.Popen([*BASU, *words], stdout=subprocess.PIPE, text=True)
-    try:
-        said = ""
-        while (found := re.search(r"http://\S+/", said)) is None:
-            line = process.stdout.readline()
-            assert line, said
-            said += line
-        yield process, found[0]
-    finally:
-        process.kill()
-        process.wait()
 
 
 def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
-from linden.protocol.values.control import AckermannControl, VehicleControl, WalkerControl
+from linden.protocol.values.control import VehicleControl, WalkerControl
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.snapshot import VEHICLE_ROW
 from linden.protocol.values.space import Vector3D
@@ -31,7 +31,7 @@ F64 = NDArray[np.float64]
 MOST_POINTS = 20_000
 """Points of one way: 30 km."""
 _ARRIVED_M = 2.0
-_LOOKS_M, _LOOKS_S = 4.0, 0.6
+_LOOKS_M, _LOOKS_S = 3.0, 0.5
 """A vehicle steers towards the point of its way so far ahead."""
 _WHEELBASE = 0.6
 """Of a vehicle's length."""
@@ -40,7 +40,10 @@ _BESIDE_M = 0.6
 """Room that a vehicle leaves at its sides."""
 _BEHIND_M = 3.0
 """Room that it leaves ahead when it waits."""
-_SLOWS_MPS2, _GAINS_MPS2 = 2.0, 1.5
+_SLOWS_MPS2 = 2.0
+_GIVES_GAS, _BRAKES = 0.2, 0.25
+"""Pedal for each m/s of difference between the wanted and the present speed."""
+_HALTS_MPS = 0.3
 _CREEPS_MPS = 1.0
 _WALKS_MPS = 1.4
 _STUCK_S = 20.0
@@ -52,6 +55,7 @@ class _Errand:
     """One actor on its way; ``points`` (N, 3) are x, y in m and speed in m/s."""
 
     points: F64
+    full_steer_rad: float = 1.0
     at: int = 0
     nearest_m: float = math.inf
     waited_s: float = 0.0
@@ -84,7 +88,7 @@ class Errands:
             Refusal: it is no vehicle or walker, or a client's Traffic Manager drives it.
         """
         episode = self._world.episode
-        record = episode.actors[actor_id]
+        record = episode.actors.get(actor_id)
         if record.kind is BlueprintKind.VEHICLE:
             slot = episode.vehicle(actor_id)
             if episode.bodies.state["autopilot"][slot]:
@@ -98,7 +102,11 @@ class Errands:
             raise ValueError("a way has one point or more, of x, y and speed")
         if self._episode is not episode:
             self._episode, self._errands = episode, {}
-        self._errands[actor_id] = _Errand(points)
+        full_steer_rad = 1.0
+        if record.kind is BlueprintKind.VEHICLE:
+            wheels = episode.bodies.physics_control(episode.vehicle(actor_id)).wheels
+            full_steer_rad = math.radians(max((wheel.max_steer_angle for wheel in wheels), default=0.0)) or 1.0
+        self._errands[actor_id] = _Errand(points, full_steer_rad)
 
     def before_frame(self) -> None:
         """Set the controls of all actors on their way."""
@@ -118,7 +126,7 @@ class Errands:
     ) -> bool:
         """Set the controls of one actor; return whether its errand has ended."""
         x_m, y_m, _, _, yaw_deg, _ = (float(value) for value in episode.actors.pose[episode.actors.row(actor_id)])
-        if episode.actors[actor_id].kind is BlueprintKind.WALKER:
+        if episode.actors.get(actor_id).kind is BlueprintKind.WALKER:
             return self._walk(episode, actor_id, errand, x_m, y_m)
         slot = episode.vehicle(actor_id)
         if episode.bodies.state["autopilot"][slot]:
@@ -133,23 +141,26 @@ class Errands:
             episode.bodies.set_control(slot, VehicleControl(brake=0.6))
             self._say(f"Actor {actor_id} has arrived.")
             return True
-        wanted_mps = float(points[errand.at, 2])
+        soon = np.searchsorted(gone, gone[errand.at] + _LOOKS_S * speed_mps)
+        wanted_mps = float(points[errand.at : soon + 1, 2].min())
         row = episode.actors.rows.view(VEHICLE_ROW)[episode.actors.row(actor_id)]
         if row["speed_limit"] > 0.0:
             wanted_mps = min(wanted_mps, float(row["speed_limit"]) / 3.6)
         has_to_wait = row["traffic_light_state"] in (TrafficLightState.RED, TrafficLightState.YELLOW)
-        half = episode.actors[actor_id].box.extent
+        half = episode.actors.get(actor_id).box.extent
         free_m = _free_m(errand, half.x, half.y, places, radii, ids != actor_id)
         wanted_mps = min(wanted_mps, math.sqrt(2.0 * _SLOWS_MPS2 * max(0.0, free_m - _BEHIND_M)))
         if free_m > _BEHIND_M + 1.0:
             wanted_mps = max(wanted_mps, _CREEPS_MPS)  # the speed at the end of the way is 0
         steer_rad = _steering(errand, x_m, y_m, math.radians(yaw_deg), speed_mps, 2.0 * half.x * _WHEELBASE)
-        pace = _SLOWS_MPS2 if wanted_mps < speed_mps else _GAINS_MPS2
-        if has_to_wait or wanted_mps < 0.3:
-            steer = float(np.clip(steer_rad, -1.0, 1.0))
-            episode.bodies.set_control(slot, VehicleControl(brake=0.5, steer=steer))
+        steer = steer_rad / errand.full_steer_rad
+        if has_to_wait or wanted_mps < _HALTS_MPS:
+            control = VehicleControl(steer=steer, brake=0.5)
+        elif wanted_mps < speed_mps:
+            control = VehicleControl(steer=steer, brake=min(0.6, _BRAKES * max(0.0, speed_mps - wanted_mps - 0.2)))
         else:
-            episode.bodies.set_ackermann(slot, AckermannControl(steer_rad, 0.0, wanted_mps, pace, 0.0))
+            control = VehicleControl(steer=steer, throttle=min(0.6, 0.1 + _GIVES_GAS * (wanted_mps - speed_mps)))
+        episode.bodies.set_control(slot, control)
         return False
 
     def _walk(self, episode: "Episode", actor_id: int, errand: _Errand, x_m: float, y_m: float) -> bool:
