@@ -15,9 +15,9 @@ from browsers import running_browser
 from page_drives import PAD, WHEEL, started
 from window_pages import WAIT_MS, page_of
 
-FASTEST_MPS = 5.8
+FASTEST_MPS = 5.8  # the limit is 6.7
 ACROSS_MPS2, SLOWS_MPS2 = 1.0, 1.0
-WHEELBASE_M, FRONT_M = 3.0, 2.6
+WHEELBASE_M, FRONT_M = 2.8, 2.0
 FULL_STEER_RAD = 1.22
 LIMIT_S = 900.0
 STATE = """(() => { const pose = page.followed();
@@ -59,8 +59,9 @@ class Driver:
         step = np.diff(self.points, axis=0)
         self.gone = np.append(0.0, np.cumsum(np.hypot(*step.T)))
         yaw = np.unwrap(np.arctan2(*step.T[::-1]))
-        bend = np.abs(np.gradient(yaw, self.gone[:-1] + 1e-6 * np.arange(len(yaw))))
-        self.mps = np.append(np.minimum(FASTEST_MPS, np.sqrt(ACROSS_MPS2 / np.maximum(bend, 1e-6))), 1.0)
+        middle = (self.gone[:-1] + self.gone[1:]) / 2.0
+        bend = np.abs(np.interp(self.gone + 2.5, middle, yaw) - np.interp(self.gone - 2.5, middle, yaw)) / 5.0
+        self.mps = np.minimum(FASTEST_MPS, np.sqrt(ACROSS_MPS2 / np.maximum(bend, 1e-6)))
         controls = page.evaluate("page.map.controls.filter(({kind}) => kind === 'stop_sign').map(({x, y}) => [x, y])")
         self.stops = [self.along(x, y) for x, y in controls]
         self.at_m = 0.0
@@ -85,10 +86,12 @@ class Driver:
         turn = math.atan2(to_y, to_x) - math.radians(yaw_deg)
         steer = math.atan2(2.0 * WHEELBASE_M * math.sin(turn), max(1.0, math.hypot(to_x, to_y))) / FULL_STEER_RAD
         error = wanted - speed
-        return max(-0.6, min(0.6, 0.35 * error + (0.12 if error > 0 else 0.0))), max(-0.7, min(0.7, steer))
+        pedals = 0.3 + 0.6 * error if error > 0.0 else 0.5 * (error + 0.3)
+        return max(-0.6, min(0.9, pedals)), max(-0.7, min(0.7, steer))
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(LIMIT_S + 300.0)
 def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) -> None:
     words = ("run", "human", "--watch", "--routes", SHORT_ROUTE, "--output", tmp_path)
     with running_browser() as browser, started(*words) as (process, address):
@@ -118,7 +121,6 @@ def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) 
     result = json.loads((folder / "result.json").read_text())
     assert result["status"] == "Completed", result["message"]
     assert result["reported"]["route_completion"] > 0.98
-    assert result["collisions"]["number"] == 0
-    assert [each["kind"] for each in result["infractions"] if "stop" in str(each)] == []
+    assert (result["collisions"]["number"], result["infractions"]) == (0, [])
     assert read_history(folder).frames["manual"].all()
     assert min(used.values()) > 50, used

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
+    from linden_window.link import PageLink
+
 PICTURES_PER_S = 10
 SIZE_PX = 1280, 720
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -34,12 +36,17 @@ PATIENCE_S = 180.0
 """A film fails if nothing new was loaded or drawn for so long; a busy machine may take any time in all."""
 _POLL_S = 0.5
 _PROGRESS = """() => { const page = globalThis.page;
-    if (!page) return [false, document.readyState];
-    const {loaded, loading, waiting} = page.world;
-    const isDone = page.replay.isOn && (page.isFlat || (loaded > 0 && waiting.length + loading === 0));
-    return [isDone, [page.replay.isOn, page.connection.bytes, loaded, page.pictures].join()]; }"""
-_SHOW = """([t, dt, limit]) => Promise.race([
-    page.show(t, dt), new Promise((_, fail) => setTimeout(() => fail(new Error("no picture was drawn")), limit))])"""
+    return page ? [page.replay.isOn && (page.isFlat || page.world.total >= 0), `${page.connection.bytes}`]
+        : [false, document.readyState]; }"""
+_SHOW = """([t, dt, limit]) => new Promise((done, fail) => {
+    let [before, since] = ["", performance.now()];
+    const watch = setInterval(() => {
+        const now = [page.world.loaded, page.actors.models.size, page.actors.isLoading, page.pictures].join();
+        if (now !== before) [before, since] = [now, performance.now()];
+        else if (performance.now() - since > limit) end(() => fail(new Error("no picture was drawn")));
+    }, 500);
+    const end = (act) => { clearInterval(watch); act(); };
+    page.show(t, dt).then(() => end(done), (error) => end(() => fail(error))); })"""
 
 
 def check_film(file: Path) -> None:
@@ -57,11 +64,11 @@ def check_film(file: Path) -> None:
         raise UserError(f"--film {file}: there is no folder {file.parent}; make it, or name another")
 
 
-def write_film(address: str, file: Path, from_s: float, until_s: float) -> None:
-    """Write the film of the page at an address, ten pictures for each simulated second.
+def write_film(link: PageLink, file: Path, from_s: float, until_s: float) -> None:
+    """Write the film of a record in the page, ten pictures for each simulated second.
 
     Args:
-        address: of the page with the record.
+        link: of the page with the record; what it has not yet sent is sent meanwhile.
         file: MP4 file with H.264.
         from_s: simulated time of the first picture.
         until_s: simulated time of the last picture.
@@ -72,12 +79,12 @@ def write_film(address: str, file: Path, from_s: float, until_s: float) -> None:
     if not 0.0 <= from_s < until_s:
         raise UserError(f"the film would begin at {from_s:g} s and end at {until_s:g} s; name an earlier --film-from")
     times_s = np.arange(from_s, until_s + 1e-6, 1.0 / PICTURES_PER_S)
-    pictures = _pictures(address, times_s.tolist())
+    pictures = _pictures(link, times_s.tolist())
     often_s = 0.1 if sys.stderr.isatty() else 10.0
     _encode(file, tqdm(pictures, total=len(times_s), unit=" pictures", desc="filming", mininterval=often_s))
 
 
-def _pictures(address: str, times_s: list[float]) -> Iterator[bytes]:
+def _pictures(link: PageLink, times_s: list[float]) -> Iterator[bytes]:
     """Yield the page at each moment as a JPEG file."""
     from playwright.sync_api import Error, sync_playwright  # noqa: PLC0415 - an extra
 
@@ -89,8 +96,8 @@ def _pictures(address: str, times_s: list[float]) -> Iterator[bytes]:
         try:
             page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True)
             page.set_default_timeout(1000.0 * PATIENCE_S)
-            page.goto(f"{address}?view=chase&film", wait_until="commit")
-            _wait_until_loaded(page)
+            page.goto(f"{link.address}?view=chase&film", wait_until="commit")
+            _wait_until_loaded(page, link)
             for t_s in times_s:
                 page.evaluate(_SHOW, [t_s, 1.0 / PICTURES_PER_S, 1000.0 * PATIENCE_S])
                 yield page.screenshot(type="jpeg", quality=92)
@@ -104,14 +111,15 @@ def _pictures(address: str, times_s: list[float]) -> Iterator[bytes]:
             browser.close()
 
 
-def _wait_until_loaded(page: Page) -> None:
-    """Wait until the page has the record and the scenery around its first moment.
+def _wait_until_loaded(page: Page, link: PageLink) -> None:
+    """Wait until the page has the record and knows the parts of the scenery.
 
     Raises:
-        UserError: nothing new was loaded or drawn for ``PATIENCE_S``.
+        UserError: nothing new was loaded for ``PATIENCE_S``.
     """
     before, since_s = None, time.monotonic()
     while True:
+        link.flush()
         is_done, progress = page.evaluate(_PROGRESS)
         if is_done:
             return

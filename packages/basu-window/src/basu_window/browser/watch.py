@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         _send(link, folders, histories, text)
         if arguments.film is not None:
             until_s = end_s if arguments.film_to is None else min(end_s, arguments.film_to)
-            write_film(link.address, arguments.film, arguments.film_from, until_s)
+            write_film(link, arguments.film, arguments.film_from, until_s)
             print(f"film              {arguments.film}")  # noqa: T201 - what a command says to its user
             return 0
         moment = "" if arguments.at is None else f"?t={arguments.at:g}"

@@ -19,6 +19,7 @@ import { World } from "./world.js";
 
 const NARROW_PX = 640;
 const FIGURES_MS = 200;
+const LOADS_MS = 50;
 /** How much of an actor's path is shown, s of simulated time. */
 const PATH_S = 60;
 const NO_WEBGL = "This browser has no WebGL, so the page shows a map. Turn on hardware acceleration, or use another browser.";
@@ -75,7 +76,7 @@ class Page {
     this.path.frustumCulled = false;
     this.world.scene.add(this.path);
     this.keepsPicture = false;
-    this.isFilmed = false;
+    this.isFilmed = parameters.has("film");
     this.panes = new Panes((order) => this.connection.send(order));
     this.connection = new Connection(
       (note) => this.note(note), (frame) => this.arrived(frame), (pane) => this.panes.take(pane), (sentence) => say(sentence, true),
@@ -88,11 +89,11 @@ class Page {
     element("map").addEventListener("click", (event) => this.clickMap(event));
     addEventListener("keydown", (event) => this.key(event));
     addEventListener("keyup", (event) => this.cameras.keys.delete(event.code));
-    document.body.classList.toggle("film", parameters.has("film"));
+    document.body.classList.toggle("film", this.isFilmed);
     this.flat(this.isFlat);
     const view = parameters.get("view");
     if (view !== null && VIEWS.includes(view)) this.view(view);
-    if (!parameters.has("film")) setInterval(() => this.figures(), FIGURES_MS);
+    if (!this.isFilmed) setInterval(() => this.figures(), FIGURES_MS);
     requestAnimationFrame(() => this.draw());
   }
 
@@ -336,8 +337,8 @@ class Page {
   }
 
   draw() {
-    requestAnimationFrame(() => this.draw());
     if (this.isFilmed) return;
+    requestAnimationFrame(() => this.draw());
     const now = performance.now();
     const dt = Math.min(0.2, (now - this.before) / 1000);
     this.before = now;
@@ -345,18 +346,19 @@ class Page {
   }
 
   /**
-   * Draw one moment of a record for a film; from the first one on nothing is drawn by itself, so that the pictures
-   * depend on simulated time only. @param {number} t @param {number} dt since the last picture, in s
+   * Draw one moment of a record for a film, with all that is seen in it. Nothing else is drawn, so the pictures depend
+   * on simulated time only. @param {number} t @param {number} dt since the last picture, in s
    */
   async show(t, dt) {
-    this.isFilmed = true;
+    const isLoading = () => !this.isFlat && (this.world.waiting.length + this.world.loading > 0 || this.actors.isLoading);
     this.replay.seek(t);
-    do {
-      await new Promise((done) => requestAnimationFrame(done));
-      this.picture(performance.now(), dt);
-      dt = 0;
-    } while (!this.isFlat && (this.world.waiting.length + this.world.loading > 0 || this.actors.isLoading));
+    this.picture(performance.now(), dt);
+    if (isLoading()) {
+      while (isLoading()) await new Promise((done) => setTimeout(done, LOADS_MS));
+      this.picture(performance.now(), 0);
+    }
     this.figures();
+    await new Promise((done) => requestAnimationFrame(done));
   }
 
   /** @param {number} now in ms @param {number} dt since the last picture, in s */

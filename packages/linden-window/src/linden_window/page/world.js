@@ -55,6 +55,8 @@ export class World {
     this.waiting = [];
     this.loading = 0;
     this.loaded = 0;
+    /** Tiles of the scene, -1 before they are known. */
+    this.total = -1;
     this.number = -1;
     this.isNight = false;
     this.precipitation = 0;
@@ -88,6 +90,7 @@ export class World {
       this.lampPlaces = [];
       this.loaded = 0;
       this.waiting = [];
+      this.total = -1;
       this.number = note.number;
     }
     if (!note.ready || this.waiting.length || this.loaded) return;
