@@ -57,7 +57,7 @@ def check_film(file: Path) -> None:
     """
     require(PLAYWRIGHT)
     require(PYAV)
-    _browser()
+    browser_path()
     if file.suffix != ".mp4":
         raise UserError(f"--film {file}: a film is an MP4 file; name it {file.with_suffix('.mp4')}")
     if not file.resolve().parent.is_dir():
@@ -91,7 +91,7 @@ def _pictures(link: PageLink, times_s: list[float]) -> Iterator[bytes]:
     width, height = SIZE_PX
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
-            executable_path=_browser(), args=list(SWITCHES), timeout=1000.0 * PATIENCE_S
+            executable_path=browser_path(), args=list(SWITCHES), timeout=1000.0 * PATIENCE_S
         )
         try:
             page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True)
@@ -144,7 +144,7 @@ def _encode(file: Path, pictures: Iterable[bytes]) -> None:
         film.mux(stream.encode(None))
 
 
-def _browser() -> str:
+def browser_path() -> str:
     """Return the path of a Chromium.
 
     Raises:
