@@ -10,9 +10,8 @@ from playwright.sync_api import Browser
 from browsers import running_browser
 from linden_window import panes
 from linden_window.link import PageLink
+from served_windows import BY_PROCESSOR
 from window_pages import WAIT_MS, begin, drive, page_of
-
-BY_PROCESSOR = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 @pytest.fixture(scope="module")

@@ -20,6 +20,8 @@ STEP_M = 1.5
 """Between two points of a way."""
 REACH_M = 30.0
 """A lane that is farther away from a place is not taken."""
+ON_M = 3.0
+"""A place that is farther away from the middle of all lanes is not on one."""
 _TURNED_DEG = 60.0
 """A lane that points into another direction is none that the vehicle is on."""
 _UNPOSTED_MPS = 30.0 / 3.6
@@ -66,6 +68,13 @@ class Ways:
                 if lanes is not None:
                     return _with_speeds(self._along(lanes, start, goal))
         return None
+
+    def heading_deg(self, x_m: float, y_m: float) -> float | None:
+        """Return the direction of travel of the lane at a place, degrees; None where there is none within ``ON_M``."""
+        away = np.hypot(self._points[:, 0] - x_m, self._points[:, 1] - y_m)
+        if not len(away) or away.min() > ON_M:
+            return None
+        return float(np.degrees(self._points[np.argmin(away), 2]))
 
     def _near(self, x_m: float, y_m: float, yaw_deg: float | None) -> list[int]:
         """Return the nearest point of each lane near a place, nearest lane first."""

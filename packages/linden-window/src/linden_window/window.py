@@ -119,21 +119,20 @@ class Window:
             return
         if order["order"] == "send":
             self._begin(self._send(order))
+        elif order["order"] == "spawn":
+            self._begin(self._spawn(order))
         else:
             self._to_source(order)
 
     async def _send(self, order: dict[str, Any]) -> None:
         """Find the way of an actor that a page sends somewhere, and send it to the source."""
-        world = self._map
         try:
             x_m, y_m, yaw_deg, to_x_m, to_y_m = (float(value) for value in (*order["from"], *order["to"]))
             if not all(map(math.isfinite, (x_m, y_m, yaw_deg, to_x_m, to_y_m))):
                 raise ValueError("a place is no number")
             way: list[list[float]] = [[to_x_m, to_y_m, 0.0]]
             if order["on_lanes"]:
-                if self._ways is None and world is not None:
-                    self._ways = await asyncio.to_thread(Ways, world.text)
-                ways = self._ways
+                ways = await self._ways_of_map()
                 found = None if ways is None else await asyncio.to_thread(ways.way, x_m, y_m, yaw_deg, to_x_m, to_y_m)
                 if found is None:
                     self._say("No lane leads from the vehicle to this place; choose a place on a street.")
@@ -144,6 +143,31 @@ class Window:
             self._say(f"The map has no lanes to drive on: {error}")
         except (KeyError, TypeError, ValueError) as error:
             self._say(f"The page sent an order that cannot be read ({error!r}); load it again.")
+
+    async def _spawn(self, order: dict[str, Any]) -> None:
+        """Turn a vehicle that a page spawns on a lane into the direction of travel, and send the order to the source."""
+        try:
+            if str(order["type"]).startswith("vehicle."):
+                x_m, y_m = (float(value) for value in order["place"][:2])
+                ways = await self._ways_of_map()
+                heading_deg = None if ways is None else await asyncio.to_thread(ways.heading_deg, x_m, y_m)
+                order = order if heading_deg is None else {**order, "yaw": heading_deg}
+        except (UserError, KeyError, TypeError, ValueError):
+            pass  # the source answers for what it cannot read
+        self._to_source(order)
+
+    async def _ways_of_map(self) -> Ways | None:
+        """Return the lanes of the present map; they are read once.
+
+        Raises:
+            UserError: the text is no OpenDRIVE that can be used.
+        """
+        world = self._map
+        if self._ways is None and world is not None:
+            ways = await asyncio.to_thread(Ways, world.text)
+            if world is self._map:
+                self._ways = ways
+        return self._ways
 
     def _say(self, text: str) -> None:
         self._hub.note({"type": "says", "text": text})

@@ -83,7 +83,7 @@ export function controlOf(send) {
     get wantsPlace() {
       return !section.hidden && spawned.value !== "";
     },
-    /** @param {number[]} place x, y, z in m @param {number} yaw in degrees */
+    /** @param {(number | null)[]} place x, y, z in m; z is null on the ground @param {number} yaw in degrees */
     spawn(place, yaw) {
       send({ order: "spawn", type: spawned.value, place, yaw });
     },

@@ -157,6 +157,7 @@ class Page {
     this.mapName = note.map;
     document.title = `${note.map} – window`;
     this.control.show(note.control);
+    element("changes").hidden = !note.control;
   }
 
   /**
@@ -236,7 +237,12 @@ class Page {
     keys.textContent = "?";
     keys.setAttribute("aria-label", "Keys");
     keys.onclick = () => help(this.input.isOn);
-    nav.append(flat, keys);
+    const changes = document.createElement("button");
+    changes.id = "changes";
+    changes.textContent = "Change";
+    changes.hidden = true;
+    changes.onclick = () => changes.setAttribute("aria-pressed", String(element("control").classList.toggle("open")));
+    nav.append(changes, flat, keys);
     this.view("orbit");
   }
 
@@ -320,6 +326,7 @@ class Page {
     const x = this.map.centre[0] + (event.clientX - innerWidth / 2) * this.map.metresPerPixel;
     const y = this.map.centre[1] + (event.clientY - innerHeight / 2) * this.map.metresPerPixel;
     if (this.control.wantsGoal) return this.control.sendTo(x, y);
+    if (this.control.wantsPlace) return this.control.spawn([x, y, null], 0);
     const reach = Math.max(3, 14 * this.map.metresPerPixel);
     const near = this.poses
       .filter((pose) => ["vehicle", "walker"].includes(this.actors.known.get(pose.id)?.kind ?? ""))
@@ -369,7 +376,8 @@ class Page {
     if (!this.chosen && ["chase", "driver"].includes(this.cameras.view)) this.next(1);
     const pose = this.followed();
     this.place(pose);
-    if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks);
+    this.debug.update(t);
+    if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks, this.debug.shapes);
     else this.draw3d(dt, t, pose);
     if (this.keepsPicture) this.keepPicture();
     const driven = this.replay.isOn ? undefined : this.poses.find((each) => each.id === this.ego);
@@ -396,9 +404,11 @@ class Page {
   /** Look at where something happens, once. @param {Pose | null} pose */
   place(pose) {
     if (this.hasPlace || !this.poses.length) return;
-    const seen = pose ?? this.poses.find((each) => this.actors.known.get(each.id)?.kind === "vehicle");
+    const vehicle = pose ?? this.poses.find((each) => this.actors.known.get(each.id)?.kind === "vehicle");
+    const seen = vehicle ?? this.poses.find((each) => each.id === this.spectator && (each.x || each.y));
     if (seen === undefined) return;
-    this.hasPlace = true;
+    this.hasPlace = vehicle !== undefined;
+    if (!this.hasPlace && !this.isFlat) return; // in three dimensions the view `spectator` shows what it sees
     this.cameras.lookAt(new Vector3(seen.x, seen.z, seen.y), 30);
     this.map.centre = [seen.x, seen.y];
   }
@@ -421,7 +431,6 @@ class Page {
     this.cameras.update(dt, pose, isWalker ? up * 0.85 : middle + up * 0.45, isWalker ? 0.2 : half * 0.25, spectator);
     this.world.load(this.cameras.focus);
     this.actors.update(this.poses, t, this.cameras.view === "driver" ? this.chosen : 0);
-    this.debug.update(t);
     this.world.update(this.cameras.focus, this.cameras.camera.position, t);
     renderer.render(this.world.scene, this.cameras.camera);
   }
