@@ -7,6 +7,8 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from browsers import running_browser
+from linden.maps.library import MapLibrary
+from linden.world import World
 from opendrive_texts import SIGNS_AND_LIGHTS
 from served_windows import BY_PROCESSOR, Served, serving
 from window_pages import WAIT_MS, page_of
@@ -14,7 +16,7 @@ from window_pages import WAIT_MS, page_of
 ON_SCREEN = """([x, y, z]) => { const at = page.cameras.focus.clone().set(x, z, y).project(page.cameras.camera);
     return [(at.x + 1) / 2 * innerWidth, (1 - at.y) / 2 * innerHeight]; }"""
 OURS = "[...page.actors.known.values()].find((actor) => actor.role === 'window')?.id"
-POSE = "(() => { const pose = page.poses.find((each) => each.id === {id}); return pose && [pose.x, pose.y, pose.z]; })()"
+POSE = "page.poses.filter(({{id}}) => id === {id}).map(({{x, y, z}}) => [x, y, z])[0]"
 SAYS = "document.getElementById('says').innerText.includes({words!r})"
 
 
@@ -42,16 +44,18 @@ def test_a_click_spawns_a_vehicle_and_another_sends_it_somewhere(browser: Browse
     page = page_of(browser, served.address + "?view=map", 1200, 800)
     page.set_default_timeout(WAIT_MS)
     page.wait_for_function("globalThis.page?.world.loaded > 0 && page.world.waiting.length + page.world.loading === 0")
-    (x, y, z, yaw), *_ = page.evaluate("page.spawnPoints")
+    spawn = World(MapLibrary().from_opendrive(SIGNS_AND_LIGHTS)).spawn_points[0]
+    x, y, z = spawn.location
     page.evaluate("([x, y, z]) => { page.cameras.focus.set(x, z, y); page.cameras.height = 90; }", [x, y, z])
     page.wait_for_timeout(500)
-    page.evaluate("(yaw) => { page.control.yaw = yaw; }", yaw)
     page.select_option("[aria-label='Spawn with a click']", "vehicle.tesla.model3")
     click(page, [x, y, z])
     page.wait_for_function(f"{OURS} !== undefined")
     car = page.evaluate(OURS)
     page.select_option("[aria-label='Spawn with a click']", "")
     page.wait_for_function(POSE.format(id=car) + " !== undefined")
+    yaw = page.evaluate(f"page.poses.find(({{id}}) => id === {car}).yaw")
+    assert (yaw - spawn.rotation.yaw + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=3.0), "along its lane"
     click(page, page.evaluate(POSE.format(id=car)))
     page.wait_for_function(f"page.chosen === {car}")
     assert "vehicle.tesla.model3" in page.inner_text("#actor")

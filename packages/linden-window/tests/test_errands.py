@@ -61,16 +61,17 @@ def test_a_way_follows_lanes_and_ends_slowly(world: World, ways: Ways) -> None:
 
 
 def test_a_way_begins_in_the_direction_of_the_vehicle(world: World, ways: Ways) -> None:
-    for number in range(len(world.spawn_points)):
-        point = world.spawn_points[number]
+    count = 0
+    for point in world.spawn_points:
         x, y, _ = point.location
         yaw = math.radians(point.rotation.yaw)
         goals = [ways.way(x, y, point.rotation.yaw, *goal[:2]) for goal in ways._points[::50]]
         found = [way for way in goals if way is not None and len(way) > 3]
-        assert found
+        count += len(found)
         for way in found:
             ahead = way[2, :2] - way[0, :2]
             assert ahead @ (math.cos(yaw), math.sin(yaw)) > 0.0
+    assert count > 10
 
 
 def test_no_way_leads_to_a_place_far_from_all_lanes(ways: Ways) -> None:

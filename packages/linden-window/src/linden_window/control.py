@@ -39,7 +39,7 @@ def carry_out(order: dict[str, Any], context: "Context", clock: "FrameClock", er
         return action(order, context, clock)
     except Refusal as refusal:
         return str(refusal)
-    except (KeyError, TypeError, ValueError) as error:
+    except (IndexError, KeyError, TypeError, ValueError) as error:
         return f"The page sent an order that cannot be read ({error!r}); load it again."
 
 
@@ -80,7 +80,10 @@ def _spawn(order: dict[str, Any], context: "Context", _clock: "FrameClock") -> s
     blueprint = context.world.library.find(str(order["type"]))
     if blueprint.kind not in (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP):
         return f"{order['type']} cannot be spawned with a click; choose a vehicle, a walker or a prop."
-    x, y, z = (_number(value) for value in order["place"])
+    x, y = (_number(value) for value in order["place"][:2])
+    above = order["place"][2]  # a click on a map in two dimensions names no height
+    heights, _ = context.world.episode.map.ground.surfaces_under([[x, y, 0.0]])
+    z = float(heights[0]) if above is None else _number(above)
     above_m = _ABOVE_M + (blueprint.box.extent.z if blueprint.kind is BlueprintKind.WALKER else 0.0)
     place = Transform(Vector3D(x, y, z + above_m), Rotation(0.0, _number(order["yaw"]), 0.0))
     role = AttributeValue("role_name", AttributeType.STRING, "window")
