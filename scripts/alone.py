@@ -124,12 +124,16 @@ USES = {
 }
 
 
-def made_files(folder: Path) -> None:
-    """Write the files that the uses need."""
+def piece_of_route() -> str:
+    """Return a routes file with the first three points of a route of BASU."""
     lines = SHORT_ROUTE.read_text(encoding="utf-8").splitlines()
     points = "".join([line for line in lines if "<position" in line or "<waypoint " in line][:3])
-    route = f'<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>'
-    texts = {"piece.xml": route, "served.py": SERVED, "many.py": MANY, "search.toml": SEARCH}
+    return f'<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>'
+
+
+def made_files(folder: Path) -> None:
+    """Write the files that the uses need."""
+    texts = {"piece.xml": piece_of_route(), "served.py": SERVED, "many.py": MANY, "search.toml": SEARCH}
     texts |= {"policy.py": POLICY, "page.py": PAGE}
     written(folder, scenario(), "drive.xosc")
     for name, text in texts.items():

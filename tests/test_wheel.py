@@ -15,39 +15,15 @@ import venv
 from pathlib import Path
 
 import pytest
+from alone import USES, piece_of_route
 from build_wheel import PIP, plain_wheel, with_kernels
 
-from basu_fixtures import SHORT_ROUTE
 from linden.compiled import COMPILER_IS_OFF, TARGET
 
 ROOT = Path(__file__).parents[1]
-OPTIONAL = (
-    "gymnasium",
-    "pyproj",
-    "IPython",
-    "nbclient",
-    "warp",
-    *(
-        "linden_maps",
-        "basu_alpasim",
-        "basu_carla_log",
-        "carla_driver_interface",
-        "grpc",
-        "basu_leaderboard",
-        "basu_openscenario",
-        "basu_ros",
-        "basu_search",
-        "basu_service",
-        "basu_sumo",
-        "basu_truth",
-        "basu_window",
-        "linden_gym",
-        "linden_ros2",
-        "linden_window",
-        "websockets",
-    ),
-)
-ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>"""
+PLUGINS = tuple(name.replace("-", "_") for name in USES if name not in ("linden", "basu"))
+OTHERS = ("gymnasium", "pyproj", "IPython", "nbclient", "warp", "carla_driver_interface", "grpc", "websockets")
+OPTIONAL = (*OTHERS, *PLUGINS)
 
 
 @pytest.fixture(scope="module")
@@ -85,9 +61,7 @@ def run(environment: Path, folder: Path, *command: str) -> "subprocess.Completed
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_basu_run_drives_with_the_simulator_of_the_wheel(installed: Path, tmp_path: Path) -> None:
-    lines = SHORT_ROUTE.read_text(encoding="utf-8").splitlines()
-    points = [line for line in lines if "<position" in line or "<waypoint " in line][:3]
-    (tmp_path / "piece.xml").write_text(ROUTE.format(points="".join(points)), encoding="utf-8")
+    (tmp_path / "piece.xml").write_text(piece_of_route(), encoding="utf-8")
     done = run(
         installed, tmp_path, "basu", "run", "basic", "--routes", "piece.xml", "--no-scenarios", "--stop-after", "3"
     )

@@ -165,3 +165,10 @@ def test_each_plugin_of_this_project_is_found_where_its_metadata_says() -> None:
             assert entry.dist is not None
             assert entry.dist.name == distribution
             assert entry.load() is not None
+
+
+def test_the_extra_all_brings_every_plugin_of_the_benchmark() -> None:
+    project = (Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+    (extra,) = [line for line in project.splitlines() if line.startswith("all = ")]
+    named = {name for group in plugins.DISTRIBUTIONS.values() for name in group.values()}
+    assert [name for name in sorted(named) if f'"{name}==' not in extra] == []

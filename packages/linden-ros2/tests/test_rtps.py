@@ -47,16 +47,17 @@ class Link:
 
 @given(st.binary(max_size=200))
 def test_any_bytes_are_read_or_refused(data: bytes) -> None:
-    for whole in (data, wire.MAGIC + bytes(14) + data):
-        with contextlib.suppress(WireError):
-            list(wire.parsed(whole, CLIENT))
+    with contextlib.suppress(WireError):
+        list(wire.parsed(wire.MAGIC + bytes(14) + data, CLIENT))
+    with pytest.raises(WireError):
+        list(wire.parsed(data, CLIENT))
 
 
 @given(st.binary(max_size=60), st.sampled_from([b"\0\3\0\0", b"\0\2\0\0"]))
 def test_any_parameters_are_read_or_refused(data: bytes, header: bytes) -> None:
     with contextlib.suppress(WireError):
         found, order = wire.list_of_payload(header + data)
-        wire.text_of(found.get(5, b""), order)
+        assert isinstance(wire.text_of(found[5], order) if 5 in found else "", str)
 
 
 def test_a_sample_arrives_with_the_request_that_it_answers() -> None:
@@ -80,7 +81,7 @@ def test_a_peer_with_big_endian_submessages_is_read() -> None:
 
 
 @given(st.sets(st.integers(1, 255)))
-def test_the_requested_numbers_arrive(missing: set[int]) -> None:
+def test_a_question_names_each_missing_number(missing: set[int]) -> None:
     asked = tuple(sorted(missing))
     data = wire.message(CLIENT, SERVER, wire.acknowledgement(READER, WRITER, 1, asked, 1))
     assert list(wire.parsed(data, SERVER)) == [Acknowledgement(TO, WRITER, 1, asked)]
@@ -112,7 +113,7 @@ def test_a_late_reader_gets_what_the_writer_still_has() -> None:
     assert not link.writer.match(TO)
 
 
-def test_a_heartbeat_repeats_for_a_silent_reader_until_it_has_left() -> None:
+def test_a_writer_repeats_its_heartbeat_until_a_silent_reader_has_left() -> None:
     link = Link()
     link.writer.match(TO)
     link.writer.write(b"1234")

@@ -129,7 +129,8 @@ def test_a_vehicle_and_its_sensor_are_spawned_published_and_destroyed(caller: Ca
     assert len(json.loads(counter.stdout.readline())) == 5
     assert caller.answer(DESTROY, id=car_id) == {"success": True}
     caller.world.tick()
-    assert not {car_id, sensor["id"]} & {each.id for each in caller.world.get_actors()}  # by ids it would ask its cache
+    snapshot = caller.world.get_snapshot()
+    assert not any(snapshot.has_actor(each) for each in (car_id, sensor["id"]))
 
 
 def test_a_random_pose_is_a_free_spawn_point(caller: Caller) -> None:
@@ -157,12 +158,13 @@ def test_a_random_pose_is_a_free_spawn_point(caller: Caller) -> None:
     ],
 )
 def test_what_cannot_be_spawned_has_no_id_and_a_sentence(caller: Caller, fields: dict[str, Any], sentence: str) -> None:
-    before = len(caller.world.get_actors())
+    caller.world.tick()  # a new client knows no frame yet
+    before = {actor.id for actor in caller.world.get_actors()}
     found = caller.answer(SPAWN, **fields)
     assert found["id"] == -1
     assert sentence in found["error_string"]
     caller.world.tick()
-    assert len(caller.world.get_actors()) == before
+    assert {actor.id for actor in caller.world.get_actors()} == before
 
 
 def test_what_is_not_there_cannot_be_destroyed(caller: Caller) -> None:

@@ -129,7 +129,7 @@ def counted(way: Way, assumed: Assumptions) -> bool:
 
 
 def write_with(path: Path, ways: Sequence[Way], journeys: Sequence[JourneyPart], assumed: Assumptions) -> None:
-    """Write the walks to and from the shuttle as SUMO's persons, whose names begin with "to" and "from"."""
+    """Write the walks to and from the shuttle as SUMO's persons, named "to" and "from" with a number."""
     walks = []
     for way in ways:
         journey = journeys[way.number]
@@ -147,7 +147,7 @@ def write_with(path: Path, ways: Sequence[Way], journeys: Sequence[JourneyPart],
 
 
 def write_without(path: Path, ways: Sequence[Way], assumed: Assumptions) -> None:
-    """Write the ways without the shuttle: persons whose names begin with "all" walk, and vehicles "car" drive."""
+    """Write the ways without the shuttle: persons named "all" walk, and vehicles named "car" drive."""
     root = ET.Element("routes")
     for way in sorted(ways, key=lambda each: (each.sets_out_s, each.number)):
         if not counted(way, assumed):

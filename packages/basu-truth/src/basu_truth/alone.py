@@ -14,7 +14,7 @@ import carla
 import numpy as np
 
 from basu.agents.sensor_streams import SensorSilentError, SensorStreams, SpawnedSensor
-from basu.episode.world import ticked_by_us
+from basu.episode.world import asking, ticked_by_us
 from basu.errors import SimulatorError, UserError
 from basu.simulator import OwnServer, connect
 from basu_truth.rig import INSTANCES, SEMANTIC_LIDAR, blueprint_of
@@ -160,18 +160,17 @@ def alone_world(town: str, sensors: Sequence[Declared], step_s: float, timeout_s
 
     Raises:
         UserError: the simulator does not have the map.
+        SimulatorError: it did not answer in time.
     """
-    server = OwnServer()
-    try:
+    with contextlib.ExitStack() as stack:
+        server = OwnServer()
+        stack.callback(server.end)
         client = connect("127.0.0.1", server.port, timeout_s)
-        bare = AloneWorld(client, town, sensors, timeout_s=timeout_s)
-        try:
-            with ticked_by_us(bare.world, step_s):
-                yield bare
-        finally:
-            bare.close()
-    finally:
-        server.end()
+        with asking("the preparation of the bare map"):
+            bare = AloneWorld(client, town, sensors, timeout_s=timeout_s)
+            stack.callback(bare.close)
+            stack.enter_context(ticked_by_us(bare.world, step_s))
+        yield bare
 
 
 def _lifted(pose: carla.Transform, lift_m: float) -> carla.Transform:

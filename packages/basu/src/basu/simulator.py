@@ -6,7 +6,6 @@ The benchmark knows two things of ``linden``: the command that starts it, and th
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import queue
 import re
 import shutil
@@ -18,6 +17,7 @@ import threading
 import time
 from collections import deque
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ import carla
 from basu.agents.process.gate import Gates, Relay
 from basu.errors import SimulatorError, UserError
 from basu.home import replaced_home
+from basu.parent_end import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -42,7 +43,6 @@ LAST_LINES = 20  # of a server's log, kept to explain its end
 UPLOADED_NAME = "OpenDriveMap"  # CARLA's name of a map that a client sent
 LONG_CALL_LIMIT_S = 300.0  # wall time of a map's load: Unreal meshes a town's roads in minutes; a busy machine is slow
 UPLOAD_VERTEX_M, UPLOAD_PIECE_M, UPLOAD_BESIDE_M = 2.0, 50.0, 0.6  # CARLA's own defaults, PythonAPI/util/config.py
-PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +178,7 @@ class OwnServer:
             stderr=subprocess.PIPE,
             text=True,
             start_new_session=True,  # Ctrl-C is for us; we end the server when the run is written
-            preexec_fn=_end_with_parent if sys.platform == "linux" else None,  # noqa: PLW1509 - one prctl call, no lock
+            preexec_fn=partial(end_with_parent, signal.SIGTERM),  # noqa: PLW1509 - one prctl call, no lock
         )
         self._port: int | None = None
         self._spoke = threading.Event()
@@ -330,10 +330,6 @@ def linden_command() -> list[str]:
         return [str(beside)]
     found = shutil.which("linden")
     return [found] if found is not None else [sys.executable, "-m", "linden.cli"]
-
-
-def _end_with_parent() -> None:
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 def connect(host: str, port: int, timeout_s: float) -> carla.Client:

@@ -200,7 +200,10 @@ def test_a_case_that_its_class_cannot_play_gets_a_sentence(
         ("tree_3", "there is no scenario 'tree_3'; did you mean 'tree_"),
         ("falling_rocks", "did you mean 'falling_rock'"),
         ("pedestrain", "did you mean 'pedestrian'"),
-        ("zzzzzz", "it may be a case, a type, a group, FILE.xml or all, and one of yours with --scenarios FILE"),
+        (
+            "zzzzzz",
+            "it may be a case, a type, a group, a suite, FILE.xml or all, and one of yours with --scenarios FILE",
+        ),
         ("tree_1:ahead=90", "'ahead' is '90'; it must be a number from 20 to 80 m"),
         ("none.xml", r"none\.xml cannot be read"),
         ("none.py", r"none\.py does not exist"),

@@ -79,7 +79,7 @@ class ReliableWriter:
 
 
 class ReliableReader:
-    """A reader that takes each sample once, and requests the samples that it misses."""
+    """A reader that takes each sample once, and asks for missing samples."""
 
     def __init__(self, entity: bytes) -> None:
         self.entity = entity
@@ -97,7 +97,7 @@ class ReliableReader:
         return True
 
     def heard(self, beat: wire.Heartbeat) -> Outgoing:
-        """Take which samples a writer has; return the request for the missing ones."""
+        """Take which samples a writer has; return the question for the missing samples."""
         writer = beat.writer
         expected, beyond = self._next.setdefault(writer, 1), self._beyond.setdefault(writer, set())
         self._advance(writer, max(expected, beat.first, beat.last - LARGEST_GAP))
@@ -109,7 +109,7 @@ class ReliableReader:
         return [(writer, self.question(writer, missing))]
 
     def question(self, writer: Guid, missing: tuple[int, ...] = ()) -> bytes:
-        """Return which samples of a writer are here, and which the reader requests."""
+        """Return which samples of a writer are here, and which ones the reader misses."""
         self._count += 1
         return wire.acknowledgement(self.entity, writer.entity, self._next.get(writer, 1), missing, self._count)
 

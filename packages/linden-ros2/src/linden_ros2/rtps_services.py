@@ -47,7 +47,7 @@ PID_LEASE, PID_TOPIC, PID_TYPE, PID_VERSION, PID_VENDOR = 0x02, 0x05, 0x07, 0x15
 PID_RELIABILITY, PID_DURABILITY, PID_USER_DATA = 0x1A, 0x1D, 0x2C
 PID_PARTICIPANT, PID_BUILT_IN, PID_ENDPOINT = 0x50, 0x58, 0x5A
 CYCLONE = b"\x01\x10"
-"""Cyclone DDS as a vendor: its rmw puts a header into the payload of requests instead."""
+"""The vendor of Cyclone DDS. Its rmw has a header in the payload of requests instead."""
 
 
 class Service(NamedTuple):
@@ -232,7 +232,7 @@ class ServiceParticipant:
             self._transmit(datagram, place)
 
     def _drop_silent(self, now_s: float) -> None:
-        """Forget the participants that were silent for their lease."""
+        """Forget the participants with an expired lease."""
         for prefix, peer in list(self._peers.items()):
             if now_s - peer.heard_s > peer.lease_s:
                 self._forget(prefix)
@@ -272,7 +272,7 @@ class ServiceParticipant:
 
     def _is_for(self, each: Sample | wire.Heartbeat, entity: bytes, service: Service | None) -> bool:
         """Whether a reader of ours is meant. Built-in writers may name no reader."""
-        if each.reader != wire.NO_READER:
+        if each.reader != wire.ANY_READER:
             return each.reader == entity
         counterpart = {WRITERS_READER: WRITERS_WRITER, READERS_READER: READERS_WRITER}
         return service is None and counterpart[entity] == each.writer.entity
@@ -340,5 +340,5 @@ class ServiceParticipant:
                 self._transmit(datagram, peer.meta if is_built_in else peer.default)
 
     def _transmit(self, datagram: bytes, place: tuple[str, int]) -> None:
-        with contextlib.suppress(OSError):  # no socket is there, or the network is full: it is sent again
+        with contextlib.suppress(OSError):  # no socket listens there, or a buffer is full: it is sent again
             self._socket.sendto(datagram, place)

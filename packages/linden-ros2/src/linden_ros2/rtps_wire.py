@@ -1,7 +1,7 @@
 """Messages of RTPS 2.3 as bytes: the submessages and parameter lists that services need.
 
-Source: OMG DDSI-RTPS 2.3, sections 8.3.7, 9.4 and 9.6. The related sample identity is of OMG DDS-RPC 1.0, section
-7.8.2.
+Source: OMG DDSI-RTPS 2.3, sections 8.3.7, 9.4 and 9.6; the related sample identity is of OMG DDS-RPC 1.0,
+section 7.8.2.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ TO_INLINE_QOS = 16
 """Bytes between the field octetsToInlineQos and the inline QoS."""
 PL_CDR_LE = b"\x00\x03\x00\x00"
 SENTINEL = 1
-NO_READER = b"\0\0\0\0"
+ANY_READER = b"\0\0\0\0"
 """The entity of no reader: all readers of the writer."""
 LARGEST_SET = 256
 """Numbers that one set of sequence numbers can hold (9.4.2.6)."""
@@ -76,7 +76,7 @@ class Heartbeat(NamedTuple):
 
 
 class Acknowledgement(NamedTuple):
-    """ACKNACK: a reader has all samples below ``base``, and requests the samples that it misses."""
+    """ACKNACK: a reader has all samples below ``base``, and asks for missing samples."""
 
     reader: Guid
     writer: bytes
@@ -121,7 +121,7 @@ def parsed(data: bytes, own_prefix: bytes) -> Iterator[Submessage]:
 
 def _sample(body: bytes, order: str, flags: int, source: bytes) -> Sample:
     (skip,) = struct.unpack_from(f"{order}H", body, 2)
-    at = 4 + skip
+    at = 4 + int(skip)
     inline_qos: dict[int, bytes] = {}
     if flags & HAS_INLINE_QOS:
         inline_qos, at = _parameters(body, order, at)
@@ -144,7 +144,7 @@ def _number_set(body: bytes, order: str, at: int) -> tuple[int, tuple[int, ...]]
 
 
 def _parameters(body: bytes, order: str, at: int) -> tuple[dict[int, bytes], int]:
-    """Return a parameter list by number, and the byte after it. Of several locators the first of UDP counts."""
+    """A parameter list by number, and the byte after it. Of several locators the first one of UDP counts."""
     found: dict[int, bytes] = {}
     while True:
         number, size = struct.unpack_from(f"{order}HH", body, at)
@@ -191,7 +191,7 @@ def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int) -
 
 
 def acknowledgement(reader: bytes, writer: bytes, base: int, missing: tuple[int, ...], count: int) -> bytes:
-    """Return ACKNACK; it requests at most `LARGEST_SET` numbers from ``base`` on."""
+    """Return ACKNACK; at most `LARGEST_SET` numbers from ``base`` on are in it."""
     asked = [each - base for each in missing if each - base < LARGEST_SET]
     words = [0] * ((max(asked, default=-1) + 32) // 32)
     for each in asked:

@@ -3,6 +3,7 @@
 Names and types are the ros-bridge's (carla_ros_bridge/bridge.py), so that its users' programs call them unchanged.
 """
 
+import contextlib
 import fnmatch
 import math
 import random
@@ -102,12 +103,23 @@ class WorldServices:
     def _destroy(self, asked: Any) -> dict[str, Any]:  # noqa: ANN401 - a message
         """Destroy an actor and what is attached to it, as the ros-bridge does."""
         try:
-            self._context.world.destroy(asked.id)
+            self._destroy_with_attached(asked.id)
         except Refusal as refusal:
             self._context.warn_once(f"{DESTROY.name}: {refusal}")
             return {"success": False}
         self._context.frame_is_due = True
         return {"success": True}
+
+    def _destroy_with_attached(self, actor_id: int) -> None:
+        """Destroy an actor and all that is attached to it; a client's call leaves the attached actors in the world.
+
+        Raises:
+            Refusal: there is none of that id, or it belongs to the map.
+        """
+        attached = [each.id for each in self._context.world.episode.actors.children(actor_id)]
+        self._context.world.destroy(actor_id)
+        for each in attached:
+            self._destroy_with_attached(each)
 
     def _spawn(self, asked: Any) -> dict[str, Any]:  # noqa: ANN401 - a message
         """Spawn an actor; a sensor is published from now on."""
@@ -174,13 +186,12 @@ class WorldServices:
         """
         points = list(self._context.world.spawn_points)
         self._random.shuffle(points)
-        refusal = Refusal("this map has no spawn points; ask for a transform in place of random_pose")
-        for point in points:
-            try:
+        if not points:
+            raise Refusal("this map has no spawn points; ask for a transform in place of random_pose")
+        for point in points[:-1]:
+            with contextlib.suppress(Refusal):  # something stands there
                 return actors.attach(self._context, description, point, 0, "")
-            except Refusal as error:  # noqa: PERF203 - the next point may be free
-                refusal = error
-        raise refusal
+        return actors.attach(self._context, description, points[-1], 0, "")
 
 
 def _transform(pose: Any) -> Transform:  # noqa: ANN401 - a message

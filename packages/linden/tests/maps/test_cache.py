@@ -33,7 +33,7 @@ def keep(folder: Path, text: str = STREET) -> Path:
     return file
 
 
-def refuse_to_read(_text: str, _walls_beyond_m: float | None) -> MapReading:
+def refuse_to_read(_text: str, _walls_beyond_m: float | None, _facts: MapFacts | None) -> MapReading:
     raise AssertionError("the map was read although it was kept")
 
 
@@ -284,6 +284,14 @@ def test_walls_are_kept_by_their_distance(tmp_path: Path, nothing_is_read: Calla
         again = cache.read(road, walls_beyond_m)
         assert_same(again.facts, kept.facts)
         assert again.wall_feet_m.tobytes() == read(road, walls_beyond_m).wall_feet_m.tobytes()
+
+
+def test_walls_at_another_distance_need_no_other_facts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cache, road = MapCache(tmp_path), STREET.replace('type="sidewalk"', 'type="driving"')
+    cache.read(road, 1.0)
+    expected_m = read(road, 2.0).wall_feet_m
+    monkeypatch.setattr("linden.maps.reading.derive", lambda _text: pytest.fail("the facts are derived again"))
+    assert cache.read(road, 2.0).wall_feet_m.tobytes() == expected_m.tobytes()
 
 
 def test_a_file_with_a_good_digest_and_bad_content_is_made_anew(tmp_path: Path) -> None:

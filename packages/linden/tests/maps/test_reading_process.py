@@ -4,6 +4,7 @@ import logging
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
@@ -59,6 +60,14 @@ def test_a_process_reads_what_would_be_read_here(walls_beyond_m: float | None) -
         (name, array.tobytes()) for name, array in here.items()
     ]
     assert (len(apart["wall_feet_m"]) > 0) == (walls_beyond_m is not None)
+
+
+@pytest.mark.usefixtures("all_are_large")
+def test_a_process_uses_facts_that_are_known() -> None:
+    known = replace(read(STREET).facts, geo_origin_deg=(12.0, 34.0))
+    apart = read_text(STREET, 2.0, known)
+    assert apart.facts.geo_origin_deg == (12.0, 34.0)
+    assert apart.wall_feet_m.tobytes() == read(STREET, 2.0).wall_feet_m.tobytes()
 
 
 @pytest.mark.usefixtures("all_are_large")

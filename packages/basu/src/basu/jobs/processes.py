@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import multiprocessing
 import os
 import signal
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from basu import client_threads
 from basu.errors import BasuError
 from basu.jobs.job import After, Died, JobOutcome, PlayerSpec, Ready, refusal, versions
+from basu.parent_end import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from basu.jobs.job import Answer
 
 END_LIMIT_S = 10.0  # of wall time for a worker to end by itself
-PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
 
 class ProcessWorker:
@@ -105,7 +104,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the command, which ends its workers
     parent = int(sys.argv[2])
     if parent and sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        end_with_parent()
         if os.getppid() != parent:  # it ended before the call
             sys.exit(1)
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the command has ended

@@ -24,7 +24,7 @@ from servers import RunningServer
 
 LIBRARY = open_library()
 BLIND, FORWARD = "blind", "forward"
-OFF_THE_ROUTE = {"DriftingNeighbour", "RedLightRunner"}  # the route has no two lanes a way and no lights
+OFF_THE_ROUTE = {"CutInAtTtc", "DriftingNeighbour", "RedLightRunner"}  # the route has no two lanes a way and no lights
 WITHOUT_OTHERS = {"ControlLoss", "SlipperyStop", "BendDeparture", "CrossWind", "SteeringDeviation"}
 # conflicts that a slow driver meets late or not at all, and some that it meets like any other
 MISSED_BY_THE_SLOW = (

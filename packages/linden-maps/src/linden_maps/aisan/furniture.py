@@ -9,6 +9,7 @@ import numpy as np
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden_maps.aisan.draft import VectorMapDraft
 from linden_maps.lanelet2.model import Relation, bounds_of
+from linden_maps.polylines import lengths, places_at
 
 _PAINT_M = 0.12
 _DASH_M, _GAP_M = 3.05, 9.14  # 10 and 30 ft: MUTCD 2009, section 3A.06
@@ -63,7 +64,7 @@ def _add_paint(draft: VectorMapDraft, number: int, users: list[int]) -> None:
 
 def _dashes(line: F64) -> list[tuple[F64, int]]:
     """Return the pieces of a broken line from its start on: paint (1) and gaps (2)."""
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    length = lengths(line)
     cuts = [0.0]
     while cuts[-1] < length[-1]:
         cuts.append(min(cuts[-1] + (_DASH_M if len(cuts) % 2 else _GAP_M), float(length[-1])))
@@ -71,7 +72,7 @@ def _dashes(line: F64) -> list[tuple[F64, int]]:
     for nth, (start, end) in enumerate(pairwise(cuts)):
         inner = length[(length > start + 1e-6) & (length < end - 1e-6)]
         places = np.concatenate([[start], inner, [end]])
-        piece = np.stack([np.interp(places, length, line[:, axis]) for axis in range(3)], axis=1)
+        piece = places_at(line, length, places)
         pieces.append((piece, 1 + nth % 2))
     return pieces
 

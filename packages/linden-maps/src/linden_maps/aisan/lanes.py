@@ -8,6 +8,7 @@ import numpy as np
 
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden_maps.lanelet2.model import Bounds, LaneletMap, bounds_of
+from linden_maps.polylines import lengths, resampled
 
 STEP_M = 1.0
 """Length of a row, as in towns of Autoware's own maps."""
@@ -53,27 +54,15 @@ def courses_of(lanelet_map: LaneletMap) -> list[Course]:
     for number, relation in lanelet_map.lanelets("road"):
         bounds = bounds_of(lanelet_map, relation)
         left, right = (np.array([lanelet_map.nodes[node][:3] for node in side]) for side in bounds)
-        length_m = (_length(left)[-1] + _length(right)[-1]) / 2.0
+        length_m = (lengths(left)[-1] + lengths(right)[-1]) / 2.0
         count = max(2, round(length_m / STEP_M) + 1)
-        left, right = _resampled(left, count), _resampled(right, count)
+        left, right = resampled(left, count), resampled(right, count)
         middle = (left + right) / 2.0
         left_m = np.hypot(*(left - middle)[:, :2].T)
         right_m = np.hypot(*(right - middle)[:, :2].T)
         cant = 100.0 * (left - right)[:, 2] / np.maximum(left_m + right_m, 1e-3)
         found.append(Course(number, middle, left_m, right_m, cant, bounds))
     return found
-
-
-def _length(line: F64) -> F64:
-    length: F64 = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    return length
-
-
-def _resampled(line: F64, count: int) -> F64:
-    length = _length(line)
-    places = np.linspace(0.0, length[-1], count)
-    resampled: F64 = np.stack([np.interp(places, length, line[:, axis]) for axis in range(3)], axis=1)
-    return resampled
 
 
 def graph_of(lanelet_map: LaneletMap, courses: list[Course]) -> CourseGraph:
@@ -149,7 +138,7 @@ def curvatures(course: Course) -> F64:
 def _curvature(line: F64, reach_m: float) -> F64:
     """Return the curvature of the circle through each point and those some way before and behind it (clockwise)."""
     count = len(line)
-    steps = max(1, round(reach_m / max(_length(line)[-1] / (count - 1), 1e-6)))
+    steps = max(1, round(reach_m / max(lengths(line)[-1] / (count - 1), 1e-6)))
     if count < 3:
         return np.zeros(count)
     steps = min(steps, (count - 1) // 2)

@@ -12,6 +12,7 @@ from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import RoadMark
 from linden.protocol.values.enums import LaneType
 from linden_maps.drawing.style import ASPHALT, OTHER_SURFACE, PAINT, SURFACES, YELLOW, group, path
+from linden_maps.polylines import places_at
 
 Corners = NDArray[np.float64]  # (N, 2), m, CARLA's frame, which is SVG's: x to the right, y down
 
@@ -90,4 +91,4 @@ def _mark_lines(tables: Tables) -> list[tuple[RoadMark, Corners]]:
 def _between(line: Corners, along_m: Corners, start_m: float, end_m: float) -> Corners:
     """Return the part of a line between two places along it."""
     places = np.unique(np.concatenate([[start_m], along_m[(along_m > start_m) & (along_m < end_m)], [end_m]]))
-    return np.stack([np.interp(places, along_m, line[:, axis]) for axis in range(2)], axis=1)
+    return places_at(line, along_m, places)

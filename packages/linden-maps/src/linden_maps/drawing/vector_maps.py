@@ -13,6 +13,7 @@ from linden_maps.aisan.tables import COLUMNS
 from linden_maps.drawing.style import ASPHALT, GRASS, GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, path
 from linden_maps.drawing.surfaces import marks, surfaces
 from linden_maps.lanelet2.model import LaneletMap, LaneletWay, bounds_of
+from linden_maps.polylines import lengths, places_at
 
 F64 = NDArray[np.float64]
 
@@ -117,15 +118,15 @@ def _halved(left: F64, right: F64) -> F64:
     share = np.linspace(0.0, 1.0, 4 * count)
     lines = []
     for side in (left, right):
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(side, axis=0), axis=1))])
-        lines.append(np.stack([np.interp(share * length[-1], length, side[:, axis]) for axis in range(2)], axis=1))
+        length = lengths(side)
+        lines.append(places_at(side, length, share * length[-1]))
     middle: F64 = (lines[0] + lines[1]) / 2.0
     return middle
 
 
 def _arrows(line: F64) -> list[F64]:
     """Return small arrow heads along a line."""
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    length = lengths(line)
     heads = []
     for at_m in np.arange(min(_ARROW_EVERY_M, length[-1]) / 2.0, length[-1], _ARROW_EVERY_M):
         nth = min(int(np.searchsorted(length, at_m)), len(line) - 1)

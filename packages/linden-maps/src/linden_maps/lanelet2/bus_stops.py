@@ -15,6 +15,7 @@ from linden.scenery.scene.linden_survey import placed
 from linden_maps.lanelet2.draft import LaneletDraft
 from linden_maps.lanelet2.model import Member
 from linden_maps.lanelet2.stretches import ROAD, SHOULDER, Stretch
+from linden_maps.polylines import places_at
 
 LENGTH_M = 12.0
 """Of an area: the shuttle's 4 m twice, and room to pull in; SUMO's bus stops are as long."""
@@ -102,4 +103,4 @@ def _window(line: F64, stop: KerbStop) -> F64:
     middle_m = min(max(_nearest(line, stop)[1], half_m), float(length[-1]) - half_m)
     start_m, end_m = middle_m - half_m, middle_m + half_m
     at = np.concatenate([[start_m], length[(length > start_m + 1e-3) & (length < end_m - 1e-3)], [end_m]])
-    return np.stack([np.interp(at, length, line[:, axis]) for axis in range(3)], axis=1)
+    return places_at(line, length, at)

@@ -18,6 +18,7 @@ from linden_maps.lanelet2.convert import ConvertedMap, convert
 from linden_maps.lanelet2.model import LaneletMap, bounds_of
 from linden_maps.lanelet2.second_reader import Routes
 from linden_maps.lanelet2.stretches import BICYCLE, DRIVABLE, ROAD, SHOULDER, WALKWAY, intersections, network_of
+from linden_maps.polylines import lengths, resampled
 
 _CELL_M = 0.5
 _SPACING_M = 0.25
@@ -90,13 +91,8 @@ def _middle(lanelet_map: LaneletMap, number: int) -> F64:
         np.array([lanelet_map.nodes[node][:3] for node in side])
         for side in bounds_of(lanelet_map, lanelet_map.relations[number])
     ]
-    lengths = [np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(s, axis=0), axis=1))]) for s in sides]
-    count = max(2, int(max(length[-1] for length in lengths) / _SPACING_M) + 2)
-    lines = [
-        np.stack([np.interp(np.linspace(0.0, length[-1], count), length, side[:, axis]) for axis in range(3)], axis=1)
-        for side, length in zip(sides, lengths, strict=True)
-    ]
-    middle: F64 = (lines[0] + lines[1]) / 2.0
+    count = max(2, int(max(lengths(side)[-1] for side in sides) / _SPACING_M) + 2)
+    middle: F64 = (resampled(sides[0], count) + resampled(sides[1], count)) / 2.0
     return middle
 
 

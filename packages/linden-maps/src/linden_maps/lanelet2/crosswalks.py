@@ -10,6 +10,7 @@ from linden_maps.lanelet2.areas import inside
 from linden_maps.lanelet2.model import Bounds, LaneletMap
 from linden_maps.lanelet2.outlines import outline_of
 from linden_maps.lanelet2.overlap import area_m2
+from linden_maps.polylines import lengths, resampled
 
 _REACH_M = 40.0
 _SPACING_M = 0.5
@@ -78,7 +79,7 @@ def crossed(target: LaneletMap, sides: dict[int, Bounds], walks: list[Crosswalk]
         low, high = corners.min(axis=0) - _REACH_M, corners.max(axis=0) + _REACH_M
         if not ((spots > low) & (spots < high)).all(axis=1).any():
             continue
-        left, right = (_resampled(np.array([target.nodes[n][:3] for n in side])) for side in bounds)
+        left, right = (_dense(np.array([target.nodes[n][:3] for n in side])) for side in bounds)
         count = max(len(left), len(right))
         line = (_to(left, count) + _to(right, count)) / 2.0
         numbers.append(np.full(len(line), number))
@@ -96,18 +97,9 @@ def crossed(target: LaneletMap, sides: dict[int, Bounds], walks: list[Crosswalk]
     return found
 
 
-def _resampled(line: F64) -> F64:
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    return _at(line, length, max(2, int(length[-1] / _SPACING_M) + 1))
+def _dense(line: F64) -> F64:
+    return resampled(line, max(2, int(lengths(line)[-1] / _SPACING_M) + 1))
 
 
 def _to(line: F64, count: int) -> F64:
-    if len(line) == count:
-        return line
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    return _at(line, length, count)
-
-
-def _at(line: F64, length: F64, count: int) -> F64:
-    places = np.linspace(0.0, length[-1], count)
-    return np.stack([np.interp(places, length, line[:, axis]) for axis in range(3)], axis=1)
+    return line if len(line) == count else resampled(line, count)

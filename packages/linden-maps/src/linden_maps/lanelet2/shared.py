@@ -13,6 +13,7 @@ import numpy as np
 
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden_maps.lanelet2.stretches import LaneletNetwork, Side
+from linden_maps.polylines import resampled
 
 NEAR_M = 0.5
 """Boundaries further apart than this are two; the shared one is their mean, so it lies within half of this of both."""
@@ -74,7 +75,7 @@ def _beside(network: LaneletNetwork, index: dict[Side, int], end_of: Callable[[i
 
 def _joined(lines: list[F64], number: int, other: int, *, turned: bool) -> bool:
     """Move two lines to their mean if they are near each other, and return whether they were."""
-    first, second = _resampled(lines[number]), _resampled(lines[other])
+    first, second = (resampled(lines[each], _PLACES) for each in (number, other))
     second = second[::-1] if turned else second
     apart_m = np.linalg.norm(first - second, axis=1).max()
     if apart_m < _SAME_M or apart_m > NEAR_M:
@@ -83,10 +84,3 @@ def _joined(lines: list[F64], number: int, other: int, *, turned: bool) -> bool:
     mean[0], mean[-1] = lines[number][0], lines[number][-1]
     lines[number], lines[other] = mean, mean[::-1] if turned else mean
     return True
-
-
-def _resampled(line: F64) -> F64:
-    """Return places (N, 3) along a line, evenly from its start to its end."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    at = np.linspace(0.0, along[-1], _PLACES)
-    return np.stack([np.interp(at, along, line[:, axis]) for axis in range(3)], axis=1)

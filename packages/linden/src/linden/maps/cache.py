@@ -60,7 +60,7 @@ class MapCache:
     def read(self, text: str, walls_beyond_m: float | None = None) -> MapReading:
         """Return what an OpenDRIVE text says, out of the folder or read by :func:`read_text`.
 
-        Facts and walls have files of their own, so one text with several walls has its facts once.
+        Facts and walls have files of their own, so a text has its facts once, and other walls need no other facts.
 
         Raises:
             MapError, UserError, NotWantedError: as of ``read_text``.
@@ -73,7 +73,7 @@ class MapCache:
         walls_m = None if walls_beyond_m is None or facts is None else _kept(walls_file, unpack_walls)
         if facts is not None and walls_m is not None:
             return MapReading(facts, walls_m)
-        reading = read_text(text, walls_beyond_m)
+        reading = read_text(text, walls_beyond_m, facts)
         if facts is None:
             self._write(facts_file, pack(reading.facts))
         if walls_beyond_m is not None:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from linden.background import checkpoint
 from linden.errors import UserError
-from linden.maps.archive import pack_reading, unpack_reading
+from linden.maps.archive import pack, pack_reading, unpack, unpack_reading
+from linden.maps.facts import MapFacts
 from linden.maps.opendrive.limits import MapError
 from linden.maps.reading import MapReading, read
 
@@ -33,7 +34,7 @@ _LOOK_S = 0.05
 """How often a thread that waits for the process looks whether the map is still wanted."""
 
 
-def read_text(text: str, walls_beyond_m: float | None = None) -> MapReading:
+def read_text(text: str, walls_beyond_m: float | None = None, facts: MapFacts | None = None) -> MapReading:
     """Return what :func:`linden.maps.reading.read` returns; a large text is read in a process of its own.
 
     Raises:
@@ -43,10 +44,11 @@ def read_text(text: str, walls_beyond_m: float | None = None) -> MapReading:
     """
     data = text.encode()
     if len(data) < LARGE_BYTES:
-        return read(text, walls_beyond_m)
+        return read(text, walls_beyond_m, facts)
     try:
         with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as made:
-            given.write(data)
+            known = {} if facts is None else pack(facts)
+            np.savez(given, text=np.frombuffer(data, np.uint8), **known)  # type: ignore[arg-type] # as in cache.py
             given.seek(0)
             _run(walls_beyond_m, given, made)
             made.seek(0)
@@ -84,8 +86,7 @@ def _run(walls_beyond_m: float | None, given: IO[bytes], made: IO[bytes]) -> Non
 
 
 def _read_back(made: IO[bytes]) -> MapReading:
-    with np.load(made, allow_pickle=False) as archive:
-        arrays: dict[str, NDArray[Any]] = {name: archive[name] for name in archive.files}
+    arrays = _arrays(made)
     for sentence in _from_json(arrays["said"]):
         log.warning("%s", sentence)
     if "error" in arrays:
@@ -94,14 +95,19 @@ def _read_back(made: IO[bytes]) -> MapReading:
 
 
 def main() -> None:
-    """Read the text of standard input, and write an archive of what it says, or why not, to standard output."""
+    """Read a text, with its facts if they are known, from an archive, and write what it says, or why not, to another.
+
+    The archives are standard input and standard output.
+    """
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server that started this process ends it
     said = _Sentences()
     log.addHandler(said)
     log.propagate = False
     try:
-        arrays = pack_reading(read(sys.stdin.buffer.read().decode(), json.loads(sys.argv[1])))
+        given = _arrays(sys.stdin.buffer)
+        text = given.pop("text").tobytes().decode()
+        arrays = pack_reading(read(text, json.loads(sys.argv[1]), unpack(given) if given else None))
     except MapError as error:
         arrays = {"error": _to_json([error.reason, error.line])}
     except MemoryError:
@@ -118,6 +124,11 @@ class _Sentences(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         self.sentences.append(record.getMessage())
+
+
+def _arrays(file: IO[bytes]) -> dict[str, NDArray[Any]]:
+    with np.load(file, allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
 
 
 def _to_json(value: object) -> NDArray[np.uint8]:

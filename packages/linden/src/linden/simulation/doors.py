@@ -61,7 +61,7 @@ class Doors:
 def _chosen(vehicle: ActorRecord, door: int) -> frozenset[Door]:
     """Return the doors that a number of the wire means, on a vehicle that has them."""
     name = vehicle.description.id
-    if vehicle.description.attribute("has_dynamic_doors") != "true":
+    if not vehicle.description.flag("has_dynamic_doors"):
         raise Refusal(f"{name} (actor {vehicle.id}) has no doors that move: its attribute has_dynamic_doors is false")
     if door == Door.ALL:
         return frozenset(SIDE_DOORS)

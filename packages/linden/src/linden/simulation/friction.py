@@ -49,8 +49,8 @@ class Trigger(NamedTuple):
 
 def trigger(description: ActorDescription) -> Trigger:
     """Return what a checked description asks for; its extents are half sizes in **cm**, as in CARLA."""
-    half = Vector3D(*(float(description.attribute(f"extent_{axis}")) * _M_PER_CM for axis in "xyz"))
-    return Trigger(BoundingBox(Vector3D(), half), float(description.attribute("friction")))
+    half = Vector3D(*(description.number(f"extent_{axis}") * _M_PER_CM for axis in "xyz"))
+    return Trigger(BoundingBox(Vector3D(), half), description.number("friction"))
 
 
 class RoadFriction:

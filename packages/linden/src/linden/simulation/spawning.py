@@ -48,7 +48,7 @@ def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
     if description.id != MESH:
         loose = bytes([SemanticTag.DYNAMIC]) == blueprint.semantic_tags or description.id in LOOSE_SIGNS
         return Solid(blueprint.box, blueprint.mass_kg, loose)
-    mass_kg, scale = float(description.attribute("mass")), float(description.attribute("scale"))
+    mass_kg, scale = description.number("mass"), description.number("scale")
     if scale == 0.0:
         raise Refusal(f"Spawn failed because of invalid actor description: {MESH} needs a scale above 0")
     centre, half = (Vector3D(*(scale * value for value in vector)) for vector in blueprint.box[:2])
@@ -104,7 +104,7 @@ def embody(bodies: Bodies, blueprint: Blueprint, description: ActorDescription, 
     if blueprint.vehicle is not None:
         model = blueprint.vehicle
         slot = bodies.add_vehicle(model.physics, pose, blueprint.box, model.wheel_offsets_m, model.undercarriage)
-        bodies.set_sticky(slot, sticky=description.attribute("sticky_control") == "true")
+        bodies.set_sticky(slot, sticky=description.flag("sticky_control"))
         return slot
     if blueprint.kind is BlueprintKind.WALKER:
         return bodies.add_walker(pose, blueprint.box, blueprint.mass_kg)

@@ -11,7 +11,6 @@ are those of the standard library alone: the keeper takes little memory and no t
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import json
 import os
 import re
@@ -21,14 +20,11 @@ import socket
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 from basu.agents.process import confinement, namespaces
+from basu.parent_end import end_with_parent, prctl
 
-if TYPE_CHECKING:
-    pass
-
-PR_SET_PDEATHSIG = 1  # prctl(2): this process gets a signal when its parent's thread is gone
 PR_SET_CHILD_SUBREAPER = 36
 OUTPUT_BYTES = 1 << 20
 """What a run's agent may write to each of its two outputs; what exceeds it is thrown away."""
@@ -64,7 +60,7 @@ def main() -> None:
     limits = ProcessLimits(*json.loads(sys.argv[4]))
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     os.set_inheritable(channel, False)
-    _set(PR_SET_CHILD_SUBREAPER, 1)
+    prctl(PR_SET_CHILD_SUBREAPER, 1)
     has_namespaces = namespaces.enter()
     outputs = [os.pipe(), os.pipe()]
     ended_read, ended_write = os.pipe()
@@ -75,7 +71,7 @@ def main() -> None:
             os.close(write)
         os.close(channel)
         _keep(pid, control, [read for read, _ in outputs], ended_read if has_namespaces else None)
-    _set(PR_SET_PDEATHSIG, signal.SIGKILL)
+    end_with_parent()
     for read, _ in (*outputs, (ended_read, 0)):
         os.close(read)
     os.close(control)
@@ -93,7 +89,7 @@ def main() -> None:
             for descriptor in (channel, outputs[0][1], outputs[1][1]):
                 os.close(descriptor)
             _be_first(agent, ended_write)
-        _set(PR_SET_PDEATHSIG, signal.SIGKILL)
+        end_with_parent()
     os.close(ended_write)
     _become_agent(channel, [write for _, write in outputs], limits, held)
 
@@ -311,9 +307,3 @@ def _children() -> list[int]:
             if int(stat.read_text().rpartition(")")[2].split()[1]) == own:
                 found.append(int(stat.parent.name))
     return found
-
-
-def _set(option: int, value: int) -> None:
-    """Call prctl(2), on Linux."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)

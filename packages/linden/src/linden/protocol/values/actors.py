@@ -44,6 +44,14 @@ class ActorDescription(NamedTuple):
         """Return the text of an attribute, ``default`` where the description lacks it."""
         return next((a.value for a in self.attributes if a.id == name), default)
 
+    def number(self, name: str) -> float:
+        """Return an attribute as a number, 0 where the description lacks it."""
+        return float(self.attribute(name, "0"))
+
+    def flag(self, name: str) -> bool:
+        """Return whether an attribute is true; it is not where the description lacks it."""
+        return self.attribute(name).lower() == "true"
+
 
 class Actor(NamedTuple):
     """A living actor as the client learns of it; the box is local, the token empty or of 24 bytes."""

@@ -45,7 +45,7 @@ class BlueprintMeshes(NamedTuple):
         parts = self.all_parts.get((description.id, chosen), plain)
         if description.id != SCALED:
             return parts
-        scale = float(description.attribute("scale"))
+        scale = description.number("scale")
         return tuple(part._replace(scale=scale) for part in parts)
 
 

@@ -88,47 +88,39 @@ def camera_spec(description: ActorDescription) -> CameraSpec:
             f"Spawn failed because of invalid actor description: a picture of {width} x {height} pixels cannot be "
             f"made; it has at most {LARGEST_AREA_PX} pixels, such as 4096 x 4096"
         )
-    fov_deg = _number(description, "fov")
+    fov_deg = description.number("fov")
     if not 0.0 < fov_deg < 180.0:
         raise Refusal(
             f"Spawn failed because of invalid actor description: no flat picture shows {fov_deg:g} degrees; "
             f"fov lies above 0 and below 180"
         )
-    return CameraSpec(width, height, fov_deg, Lens(*(_number(description, f"lens_{name}") for name in Lens._fields)))
+    return CameraSpec(width, height, fov_deg, Lens(*(description.number(f"lens_{name}") for name in Lens._fields)))
 
 
 def film(description: ActorDescription) -> Film:
     """Read the exposure, colour and bloom of a complete description."""
     return Film(
-        postprocess=_flag(description, "enable_postprocess_effects"),
-        gamma=_number(description, "gamma"),
+        postprocess=description.flag("enable_postprocess_effects"),
+        gamma=description.number("gamma"),
         manual=description.attribute("exposure_mode", "histogram") == "manual",
-        compensation_stops=_number(description, "exposure_compensation"),
-        shutter_hz=_number(description, "shutter_speed"),
-        iso=_number(description, "iso"),
-        fstop=_number(description, "fstop"),
-        bloom=_number(description, "bloom_intensity"),
-        temperature_k=_number(description, "temp"),
-        tint=_number(description, "tint"),
+        compensation_stops=description.number("exposure_compensation"),
+        shutter_hz=description.number("shutter_speed"),
+        iso=description.number("iso"),
+        fstop=description.number("fstop"),
+        bloom=description.number("bloom_intensity"),
+        temperature_k=description.number("temp"),
+        tint=description.number("tint"),
     )
 
 
 def event_spec(description: ActorDescription) -> EventSpec:
     """Read the thresholds of an event camera's complete description."""
     return EventSpec(
-        up=_number(description, "positive_threshold"),
-        down=_number(description, "negative_threshold"),
-        up_deviation=_number(description, "sigma_positive_threshold"),
-        down_deviation=_number(description, "sigma_negative_threshold"),
+        up=description.number("positive_threshold"),
+        down=description.number("negative_threshold"),
+        up_deviation=description.number("sigma_positive_threshold"),
+        down_deviation=description.number("sigma_negative_threshold"),
         rest_ns=int(description.attribute("refractory_period_ns", "0")),
-        use_log=_flag(description, "use_log"),
-        log_eps=_number(description, "log_eps"),
+        use_log=description.flag("use_log"),
+        log_eps=description.number("log_eps"),
     )
-
-
-def _number(description: ActorDescription, name: str) -> float:
-    return float(description.attribute(name, "0"))
-
-
-def _flag(description: ActorDescription, name: str) -> bool:
-    return description.attribute(name, "false").lower() == "true"

@@ -34,7 +34,7 @@ def gnss_spec(description: ActorDescription) -> GnssSpec:
     """Read ``noise_lat_bias``, ``noise_lat_stddev`` and the like of a complete description."""
 
     def read(kind: str) -> GeoLocation:
-        return GeoLocation(*(_number(description, f"noise_{axis}_{kind}") for axis in ("lat", "lon", "alt")))
+        return GeoLocation(*(description.number(f"noise_{axis}_{kind}") for axis in ("lat", "lon", "alt")))
 
     return GnssSpec(read("bias"), read("stddev"), _seed(description))
 
@@ -43,18 +43,14 @@ def imu_spec(description: ActorDescription) -> ImuSpec:
     """Read ``noise_accel_stddev_x`` and the like of a complete description."""
 
     def read(kind: str) -> Vector3D:
-        return Vector3D(*(_number(description, f"noise_{kind}_{axis}") for axis in "xyz"))
+        return Vector3D(*(description.number(f"noise_{kind}_{axis}") for axis in "xyz"))
 
     return ImuSpec(read("accel_stddev"), read("gyro_stddev"), read("gyro_bias"), _seed(description))
 
 
 def interval_s(description: ActorDescription) -> float:
     """Read ``sensor_tick``: seconds between two measurements, 0 for one every frame; 0 too where a sensor has none."""
-    return _number(description, "sensor_tick")
-
-
-def _number(description: ActorDescription, name: str) -> float:
-    return float(description.attribute(name, "0"))
+    return description.number("sensor_tick")
 
 
 def _seed(description: ActorDescription) -> int:

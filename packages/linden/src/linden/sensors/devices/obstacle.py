@@ -44,9 +44,9 @@ class Obstacle(NamedTuple):
 def read_spec(description: ActorDescription) -> ObstacleSpec:
     """Read a complete description."""
     return ObstacleSpec(
-        distance_m=max(0.0, float(description.attribute("distance"))),
-        radius_m=max(0.0, float(description.attribute("hit_radius"))),
-        only_dynamics=description.attribute("only_dynamics").lower() == "true",
+        distance_m=max(0.0, description.number("distance")),
+        radius_m=max(0.0, description.number("hit_radius")),
+        only_dynamics=description.flag("only_dynamics"),
     )
 
 

@@ -46,9 +46,9 @@ class Detections(NamedTuple):
 def read_spec(description: ActorDescription) -> RadarSpec:
     """Read a complete description."""
     return RadarSpec(
-        horizontal_deg=float(description.attribute("horizontal_fov")),
-        vertical_deg=float(description.attribute("vertical_fov")),
-        range_m=float(description.attribute("range")),
+        horizontal_deg=description.number("horizontal_fov"),
+        vertical_deg=description.number("vertical_fov"),
+        range_m=description.number("range"),
         points_per_s=int(description.attribute("points_per_second")),
         seed=int(description.attribute("noise_seed")),
     )

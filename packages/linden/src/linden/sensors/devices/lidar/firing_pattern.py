@@ -53,18 +53,14 @@ class Fired(NamedTuple):
 
 def read_fan(description: ActorDescription) -> Fan:
     """Read a complete description."""
-
-    def number(name: str) -> float:
-        return float(description.attribute(name))
-
     return Fan(
         channels=max(1, int(description.attribute("channels"))),
-        upper_deg=number("upper_fov"),
-        lower_deg=number("lower_fov"),
-        horizontal_deg=number("horizontal_fov"),
-        rotation_hz=number("rotation_frequency"),
+        upper_deg=description.number("upper_fov"),
+        lower_deg=description.number("lower_fov"),
+        horizontal_deg=description.number("horizontal_fov"),
+        rotation_hz=description.number("rotation_frequency"),
         points_per_s=int(description.attribute("points_per_second")),
-        range_m=number("range"),
+        range_m=description.number("range"),
     )
 
 

@@ -66,11 +66,11 @@ def scan(
 def read_losses(description: ActorDescription) -> Losses:
     """Read a complete description."""
     return Losses(
-        attenuation_per_m=float(description.attribute("atmosphere_attenuation_rate")),
-        general_rate=float(description.attribute("dropoff_general_rate")),
-        intensity_limit=float(description.attribute("dropoff_intensity_limit")),
-        zero_intensity=float(description.attribute("dropoff_zero_intensity")),
-        deviation_m=float(description.attribute("noise_stddev")),
+        attenuation_per_m=description.number("atmosphere_attenuation_rate"),
+        general_rate=description.number("dropoff_general_rate"),
+        intensity_limit=description.number("dropoff_intensity_limit"),
+        zero_intensity=description.number("dropoff_zero_intensity"),
+        deviation_m=description.number("noise_stddev"),
         seed=int(description.attribute("noise_seed")),
     )
 

@@ -65,17 +65,17 @@ class CamSpec(NamedTuple):
 def channel_spec(description: ActorDescription) -> ChannelSpec:
     """Read a complete description of either sensor."""
     return ChannelSpec(
-        transmit_power_dbm=_number(description, "transmit_power"),
-        receiver_sensitivity_dbm=_number(description, "receiver_sensitivity"),
-        frequency_ghz=_number(description, "frequency_ghz"),
-        antenna_gain_db=_number(description, "combined_antenna_gain"),
+        transmit_power_dbm=description.number("transmit_power"),
+        receiver_sensitivity_dbm=description.number("receiver_sensitivity"),
+        frequency_ghz=description.number("frequency_ghz"),
+        antenna_gain_db=description.number("combined_antenna_gain"),
         scenario=Scenario(description.attribute("scenario")),
         model=PathLossModel(description.attribute("path_loss_model")),
-        path_loss_exponent=_number(description, "path_loss_exponent"),
-        reference_distance_m=_number(description, "d_ref"),
-        filter_distance_m=_number(description, "filter_distance"),
-        etsi_fading=_flag(description, "use_etsi_fading"),
-        custom_fading_db=_number(description, "custom_fading_stddev"),
+        path_loss_exponent=description.number("path_loss_exponent"),
+        reference_distance_m=description.number("d_ref"),
+        filter_distance_m=description.number("filter_distance"),
+        etsi_fading=description.flag("use_etsi_fading"),
+        custom_fading_db=description.number("custom_fading_stddev"),
         seed=int(description.attribute("noise_seed")),
     )
 
@@ -86,7 +86,7 @@ def cam_spec(description: ActorDescription) -> CamSpec:
     Raises:
         Refusal: the least interval is longer than the greatest.
     """
-    least_s, greatest_s = (_number(description, f"gen_cam_{name}") for name in ("min", "max"))
+    least_s, greatest_s = (description.number(f"gen_cam_{name}") for name in ("min", "max"))
     if least_s > greatest_s:
         raise Refusal(
             f"Spawn failed because of invalid actor description: messages cannot be {least_s:g} s apart at least and "
@@ -94,19 +94,11 @@ def cam_spec(description: ActorDescription) -> CamSpec:
         )
     errors = CamErrors(
         position=gnss_spec(description),
-        heading_bias_deg=_number(description, "noise_head_bias"),
-        heading_deviation_deg=_number(description, "noise_head_stddev"),
-        speed_deviation_mps=_number(description, "noise_vel_stddev_x"),
-        acceleration_deviation_mps2=Vector3D(*(_number(description, f"noise_accel_stddev_{axis}") for axis in "xyz")),
-        yaw_rate_bias_radps=_number(description, "noise_yawrate_bias"),
-        yaw_rate_deviation_radps=_number(description, "noise_yawrate_stddev"),
+        heading_bias_deg=description.number("noise_head_bias"),
+        heading_deviation_deg=description.number("noise_head_stddev"),
+        speed_deviation_mps=description.number("noise_vel_stddev_x"),
+        acceleration_deviation_mps2=Vector3D(*(description.number(f"noise_accel_stddev_{axis}") for axis in "xyz")),
+        yaw_rate_bias_radps=description.number("noise_yawrate_bias"),
+        yaw_rate_deviation_radps=description.number("noise_yawrate_stddev"),
     )
-    return CamSpec(least_s, greatest_s, _flag(description, "fixed_rate"), errors)
-
-
-def _number(description: ActorDescription, name: str) -> float:
-    return float(description.attribute(name))
-
-
-def _flag(description: ActorDescription, name: str) -> bool:
-    return description.attribute(name) == "true"
+    return CamSpec(least_s, greatest_s, description.flag("fixed_rate"), errors)
