@@ -203,7 +203,9 @@ def takeover(pictures: Pictures) -> None:
 def main() -> None:
     """Take the pictures that were asked for, or all."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="live, night, debug, ghosts, takeover (default: all)")
+    parser.add_argument(
+        "scenes", nargs="*", metavar="SCENE", help="live, night, debug, ghosts, takeover (default: all)"
+    )
     parser.add_argument("--folder", type=Path, default=Path(__file__).parents[1] / "docs" / "images")
     parser.add_argument("--carla", type=Path, help="folder PythonAPI of CARLA 0.9.16, for the scene `debug`")
     arguments = parser.parse_args()

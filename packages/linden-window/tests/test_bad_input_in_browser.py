@@ -59,7 +59,9 @@ def test_ten_pages_at_once_see_the_same_world_and_one_too_many_reads_why(browser
     for page in pages:
         page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=5), timeout=WAIT_MS)
     further = page_of(browser, served.address + "?flat", 300, 300)
-    further.wait_for_function("globalThis.page && " + SAYS.format(words="There are enough pages already"), timeout=WAIT_MS)
+    further.wait_for_function(
+        "globalThis.page && " + SAYS.format(words="There are enough pages already"), timeout=WAIT_MS
+    )
     assert all(page.errors == [] for page in pages)
     for page in [*pages, further]:
         page.close()
@@ -90,7 +92,7 @@ def test_a_page_that_only_watches_cannot_change_the_world(browser: Browser, serv
     page.close()
 
 
-def test_a_server_that_is_killed_is_told_to_the_person(browser: Browser, tmp_path: Path) -> None:
+def test_the_page_names_a_server_that_was_killed(browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "Street.xodr").write_text(SIGNS_AND_LIGHTS)
     with serving("--maps", tmp_path, "--map", "Street", "--window") as served:
         page = page_of(browser, served.address + "?flat", 600, 400)

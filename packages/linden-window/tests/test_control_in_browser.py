@@ -1,5 +1,6 @@
 """Claims about `--window-control` in a real browser: spawn with a click, choose, send somewhere, weather, pause."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -61,8 +62,9 @@ def test_a_click_spawns_a_vehicle_and_another_sends_it_somewhere(browser: Browse
     assert "vehicle.tesla.model3" in page.inner_text("#actor")
     page.click("text=Send somewhere")
     page.wait_for_timeout(300)
-    goal = page.evaluate(f"page.poses.filter(({{id}}) => id === {car}).map(({{x, y, z, yaw}}) => "
-                         "[x + 18 * Math.cos(yaw * Math.PI / 180), y + 18 * Math.sin(yaw * Math.PI / 180), z])[0]")  # fmt: skip
+    x, y, z = page.evaluate(POSE.format(id=car))
+    ahead = math.radians(yaw)
+    goal = [x + 18.0 * math.cos(ahead), y + 18.0 * math.sin(ahead), z]
     click(page, goal)
     page.wait_for_function(SAYS.format(words="is on its way"))
     page.wait_for_function(f"page.poses.find(({{id}}) => id === {car}).speed > 1")

@@ -15,6 +15,7 @@ from opendrive_texts import SIGNS_AND_LIGHTS
 from page_drives import PAD, WHEEL, started
 from window_pages import WAIT_MS, page_of
 
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with running_browser() as found:

@@ -96,7 +96,9 @@ def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) 
     words = ("run", "human", "--watch", "--routes", SHORT_ROUTE, "--output", tmp_path)
     with running_browser() as browser, started(*words) as (process, address):
         page = page_of(browser, address + "?flat")
-        page.wait_for_function("globalThis.page?.input.isOn && page.map.route.length && page.followed()", timeout=WAIT_MS)
+        page.wait_for_function(
+            "globalThis.page?.input.isOn && page.map.route.length && page.followed()", timeout=WAIT_MS
+        )
         driver, hands = Driver(page), Hands(page)
         until_s, used = time.monotonic() + LIMIT_S, {"keyboard": 0, "gamepad": 0, "wheel": 0}
         while (state := page.evaluate(STATE)) and not state[5] and process.poll() is None:

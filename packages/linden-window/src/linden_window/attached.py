@@ -44,7 +44,9 @@ class AttachedWindow:
                     link.note({"type": "says", "text": answer})
             return link.is_open
 
-        server.follow(Follower("window", lambda _measured: observer.after_frame(), errands.before_frame), link.fileno(), read)
+        server.follow(
+            Follower("window", lambda _measured: observer.after_frame(), errands.before_frame), link.fileno(), read
+        )
         observer.after_frame()  # the map, so that its scene is ready before the first page
         return link.address
 

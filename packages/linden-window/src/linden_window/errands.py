@@ -1,8 +1,8 @@
 """`Errands`: vehicles and walkers that a page has sent somewhere, driven in each frame until they arrive.
 
-A vehicle follows the way of `linden_window.ways` and keeps to the posted limit. It waits behind what is on its way, and
-where CARLA's ``get_traffic_light_state`` is red or yellow: at lights, and at stop and yield signs as long as the server
-says so. It knows no other right of way. A walker walks straight to the place.
+A vehicle follows the way of `linden_window.ways` and keeps to the posted limit. It waits behind actors on its way. It
+also waits while CARLA's ``get_traffic_light_state`` is red or yellow, which holds for lights, stop signs and yield signs.
+It knows no other right of way. A walker walks straight to the place.
 """
 
 import math
@@ -187,7 +187,7 @@ class Errands:
 
 
 def _bodies(episode: "Episode") -> tuple[F64, F64, NDArray[np.int64]]:
-    """Return places (N, 2), half widths (N,) and ids (N,) of all that a vehicle must not touch, in m."""
+    """Return places (N, 2), half widths (N,) and ids (N,) of the actors that a vehicle must not touch, in m."""
     kinds = (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP)
     records = [each for each in episode.actors if each.kind in kinds and each.slot != NO_BODY]
     rows = np.array([episode.actors.row(each.id) for each in records], np.intp)

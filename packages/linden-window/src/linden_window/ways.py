@@ -48,7 +48,7 @@ class Ways:
         self._after = lane_links(opendrive).successors
         rows = np.flatnonzero(tables.lanes["type_bits"] & int(LaneType.DRIVING))
         self._begins: dict[int, slice] = {}
-        parts = [np.zeros((0, 5))]
+        parts: list[F64] = [np.zeros((0, 5))]
         at = 0
         for row in rows.tolist():
             points = _points_of(tables, row)
@@ -127,7 +127,7 @@ def _points_of(tables: Tables, row: int) -> F64:
     lane = tables.lanes[row]
     start_m, end_m = float(lane["start_m"]), float(lane["end_m"])
     count = max(2, math.ceil((end_m - start_m) / STEP_M) + 1)
-    s_m = np.linspace(start_m + 1e-3, max(start_m + 2e-3, end_m - 1e-3), count)
+    s_m = np.linspace(start_m + 1e-3, max(start_m + 2e-3, end_m - 1e-3), count).astype(np.float64)
     rows = np.full(count, row)
     places = tables.lane_centres(rows, s_m)
     limit = tables.speeds.value(rows, s_m)

@@ -4,7 +4,6 @@ import asyncio
 import gzip
 import json
 import logging
-import math
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -128,8 +127,6 @@ class Window:
         """Find the way of an actor that a page sends somewhere, and send it to the source."""
         try:
             x_m, y_m, yaw_deg, to_x_m, to_y_m = (float(value) for value in (*order["from"], *order["to"]))
-            if not all(map(math.isfinite, (x_m, y_m, yaw_deg, to_x_m, to_y_m))):
-                raise ValueError("a place is no number")
             way: list[list[float]] = [[to_x_m, to_y_m, 0.0]]
             if order["on_lanes"]:
                 ways = await self._ways_of_map()
@@ -145,7 +142,7 @@ class Window:
             self._say(f"The page sent an order that cannot be read ({error!r}); load it again.")
 
     async def _spawn(self, order: dict[str, Any]) -> None:
-        """Turn a vehicle that a page spawns on a lane into the direction of travel, and send the order to the source."""
+        """Turn a vehicle that a page spawns on a lane into its direction of travel, and pass the order on."""
         try:
             if str(order["type"]).startswith("vehicle."):
                 x_m, y_m = (float(value) for value in order["place"][:2])

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 PICTURES_PER_S = 10
 SIZE_PX = 1280, 720
+QUALITY = "28"
+"""x264's constant rate factor: about 3 Mbit/s."""
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SWITCHES = (
     # root has no sandbox; WebGL is computed by the processor where there is no graphics card
@@ -135,6 +137,7 @@ def _encode(file: Path, pictures: Iterable[bytes]) -> None:
 
     with av.open(str(file), "w") as film:
         stream: Any = film.add_stream("libx264", rate=Fraction(PICTURES_PER_S))
+        stream.options = {"crf": QUALITY}
         stream.width, stream.height, stream.pix_fmt = *SIZE_PX, "yuv420p"
         for number, picture in enumerate(pictures):
             with av.open(io.BytesIO(picture), format="mjpeg") as still:
