@@ -36,6 +36,15 @@ WAIT_MS = 300_000.0
 ROUTE = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
 IS_DRAWN = """globalThis.page && page.poses.length > 0 && (page.isFlat ? page.map.edges !== null
     : page.world.total >= 0 && page.world.waiting.length + page.world.loading === 0 && !page.actors.isLoading)"""
+LOOK_AT_WALKERS = """(() => {
+  const street = ({id}) => ["vehicle", "walker"].includes(page.actors.known.get(id)?.kind);
+  const near = (a) => page.poses.filter((b) => street(b) && Math.hypot(a.x - b.x, a.y - b.y) < 35).length;
+  const walkers = page.poses.filter(({id}) => page.actors.known.get(id)?.kind === "walker");
+  const best = walkers.map((pose) => ({...pose, near: near(pose)})).sort((a, b) => b.near - a.near)[0];
+  page.hasPlace = true;
+  page.map.centre = [best.x, best.y];
+  page.cameras.lookAt(page.cameras.focus.clone().set(best.x, best.z, best.y), 38);
+})()"""
 RAINY_NIGHT = carla.WeatherParameters(
     cloudiness=100.0, precipitation=80.0, precipitation_deposits=90.0, wetness=100.0, sun_altitude_angle=-40.0
 )
@@ -131,10 +140,20 @@ class Pictures:
         wide = page.evaluate("document.documentElement.scrollWidth")
         print(f"{file}: {per_s:.1f} pictures/s, {bytes_per_s / 1000:.0f} kB/s, {wide} px wide", flush=True)
 
-    def of(self, scene: str, address: str, look: str) -> None:
-        """Take a scene at both widths; ``look`` is the query of the address."""
+    def of(self, scene: str, address: str, look: str, until: str = "true", first: str = "") -> None:
+        """Take a scene at both widths.
+
+        Args:
+            scene: its name.
+            address: of the page.
+            look: query of the address.
+            until: JavaScript that is true as soon as the page shows what the picture is about.
+            first: JavaScript that moves the camera.
+        """
         for suffix, size in SIZES.items():
             with opened(self.browser, f"{address}{look}", size) as page:
+                page.wait_for_function(until)
+                page.evaluate(first)
                 self.take(scene, page, suffix)
 
 
@@ -149,13 +168,14 @@ def serve_scenes(pictures: Pictures, scenes: set[str], examples: Path | None) ->
             actors = traffic(client)
             time.sleep(15.0)
             if "live" in scenes:
-                pictures.of("live", address, "?view=chase")
+                pictures.of("live", address, "?view=orbit", first=LOOK_AT_WALKERS)
             if "night" in scenes:
                 world.set_weather(RAINY_NIGHT)
-                pictures.of("night", address, "?view=chase")
+                pictures.of("night", address, "?view=orbit", first=LOOK_AT_WALKERS)
                 world.set_weather(carla.WeatherParameters.ClearNoon)
             for guide in actors[-WALKERS:]:
                 guide.stop()
+            client.get_trafficmanager(8000).shut_down()
             client.apply_batch([carla.command.DestroyActor(actor) for actor in actors])
         if "debug" in scenes and examples is not None:
             explorer = [sys.executable, str(examples / "util" / "lane_explorer.py"), "-p", str(port), "-i", "-s", "4"]
@@ -165,8 +185,7 @@ def serve_scenes(pictures: Pictures, scenes: set[str], examples: Path | None) ->
             place = ["-x", f"{start.x:.1f}", "-y", f"{start.y:.1f}", "-z", f"{start.z:.1f}"]
             process = subprocess.Popen([*explorer, *place], stdout=subprocess.DEVNULL)
             try:
-                time.sleep(4.0)
-                pictures.of("debug", address, "?view=spectator")
+                pictures.of("debug", address, "?view=spectator", "page.debug.shapes.length > 20")
             finally:
                 process.terminate()
                 process.wait()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
+import carla
 import pytest
 from playwright.sync_api import Browser, Page
 
@@ -96,5 +97,33 @@ def test_weather_pause_and_one_step_work_from_the_page(browser: Browser, served:
     assert page.evaluate("page.timeline.frames.at(-1).number") == before + 1
     page.click("text=Go on")
     page.wait_for_function(f"page.timeline.frames.at(-1).number > {before} + 5")
+    assert page.errors == []
+    page.close()
+
+
+@pytest.mark.slow
+def test_sensors_of_the_chosen_vehicle_have_panes(browser: Browser, served: Served) -> None:
+    client = carla.Client("127.0.0.1", served.port)
+    client.set_timeout(60.0)
+    world = client.get_world()
+    library = world.get_blueprint_library()
+    car = world.spawn_actor(library.find("vehicle.tesla.model3"), world.get_map().get_spawn_points()[0])
+    above = carla.Transform(carla.Location(z=2.5))
+    lidar, idle = (
+        world.spawn_actor(library.find(f"sensor.{name}"), above, car) for name in ("lidar.ray_cast", "other.imu")
+    )
+    lidar.listen(lambda _measured: None)
+    page = page_of(browser, served.address + "?flat", 1200, 800)
+    page.set_default_timeout(WAIT_MS)
+    page.wait_for_function(f"globalThis.page?.poses.some(({{id}}) => id === {car.id})")
+    assert not page.is_visible("#sensors"), "no actor is chosen"
+    page.keyboard.press("f")
+    page.wait_for_function(f"page.chosen === {car.id}")
+    page.click(f"#sensors >> text=ray_cast {lidar.id}")
+    page.wait_for_function(f"page.panes.drawn.get('ray_cast {lidar.id}') > 2")
+    page.click(f"#sensors >> text=imu {idle.id}")
+    assert "nothing measured yet" in page.inner_text("#panes"), "nothing is measured for a page alone"
+    lidar.destroy()
+    page.wait_for_function("document.querySelectorAll('#panes figure').length === 1")
     assert page.errors == []
     page.close()

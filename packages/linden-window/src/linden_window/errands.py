@@ -1,8 +1,8 @@
 """`Errands`: vehicles and walkers that a page has sent somewhere, driven in each frame until they arrive.
 
 A vehicle follows the way of `linden_window.ways` and keeps to the posted limit. It waits behind actors on its way. It
-also waits while CARLA's ``get_traffic_light_state`` is red or yellow, which holds for lights, stop signs and yield signs.
-It knows no other right of way. A walker walks straight to the place.
+also waits while CARLA's ``get_traffic_light_state`` is red or yellow, at lights, stop signs and yield signs. It knows
+no other right of way. A walker walks straight to the place.
 """
 
 import math

@@ -114,6 +114,7 @@ class Page {
       actors: () => {
         this.spectator = note.spectator ?? 0;
         this.actors.describe(note.actors);
+        this.panes.describeOf(note.actors);
       },
       weather: () => {
         this.world.setWeather(note.weather);
@@ -146,6 +147,7 @@ class Page {
   /** @param {any} note */
   beginScene(note) {
     this.world.begin(note);
+    this.panes.named = "";
     if (note.error) say(note.error, true);
     if (!note.ready && !note.kept) say(BUILDING, false, Infinity);
     if (note.ready) {
@@ -463,6 +465,7 @@ class Page {
     const pose = this.followed();
     const actor = pose === null ? undefined : this.actors.known.get(pose.id);
     box.hidden = actor === undefined;
+    this.panes.carriedBy(this.chosen);
     const isStreet = actor !== undefined && pose !== null && ["vehicle", "walker", "prop"].includes(actor.kind);
     this.control.choose(isStreet ? { id: pose.id, x: pose.x, y: pose.y, yaw: pose.yaw, isVehicle: actor.kind === "vehicle" } : null);
     this.showPath(pose);
