@@ -33,7 +33,9 @@ if TYPE_CHECKING:
 VEHICLES, WALKERS, SEED = 100, 50, 3
 SIZES = {"": (1280, 800), "-phone": (390, 844)}
 WAIT_MS = 300_000.0
-ROUTE = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu" / "routes" / "linden_short.xml"
+BASU_FILES = Path(__file__).parents[1] / "packages" / "basu" / "src" / "basu"
+ROUTE, KEYS = BASU_FILES / "routes" / "linden_short.xml", BASU_FILES / "data" / "human_session.json"
+DRIVERS = (("basic",), ("behavioral",), ("human", "--keys", KEYS))
 IS_DRAWN = """globalThis.page && page.poses.length > 0 && (page.isFlat ? page.map.edges !== null
     : page.world.total >= 0 && page.world.waiting.length + page.world.loading === 0 && !page.actors.isLoading)"""
 LOOK_AT_WALKERS = """(() => {
@@ -191,16 +193,16 @@ def serve_scenes(pictures: Pictures, scenes: set[str], examples: Path | None) ->
                 process.wait()
 
 
-def driven(folder: Path, agent: str) -> Path:
-    """Let an agent drive the short route; return the folder of the run."""
-    subprocess.run([*BASU, "run", agent, "--routes", ROUTE, "--output", folder], check=True, capture_output=True)
+def driven(folder: Path, *driver: str | Path) -> Path:
+    """Let a driver drive the short route; return the folder of the run."""
+    subprocess.run([*BASU, "run", *driver, "--routes", ROUTE, "--output", folder], check=True, capture_output=True)
     return (folder / "latest").resolve()
 
 
 def ghosts(pictures: Pictures) -> None:
     """A recorded run beside two others."""
     with tempfile.TemporaryDirectory() as place:
-        runs = [driven(Path(place) / agent, agent) for agent in ("basic", "behavioral", "human")]
+        runs = [driven(Path(place) / str(driver[0]), *driver) for driver in DRIVERS]
         with running(*BASU, "watch", *runs) as (_, address, _):
             pictures.of("ghosts", address, "?view=chase&t=14")
 

@@ -12,7 +12,7 @@ from basu.metrics.incremental import SoFar
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring, scoring_of_run
 from basu.output.report.documents import CONFIG_FILE, REPORT_FILE
-from basu.records.history.files import lacks, read_history
+from basu.records.history.files import HISTORY_FILE, lacks, read_history
 from basu.records.recording_files import MAP_FILE
 from basu.settings.resolve import resolve
 from basu_window.browser.film import check_film, write_film
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError("--at is a moment of the page; name the first moment of a film with --film-from")
     if len(folders) > MOST_RUNS:
         raise UserError(f"a page shows at most {MOST_RUNS} runs at once; name fewer than {len(folders)}")
-    histories = [read_history(folder) for folder in folders]
+    histories = [_read(folder) for folder in folders]
     towns = sorted({history.facts.route.town for history in histories})
     if len(towns) > 1:
         raise UserError(f"the runs are of different towns ({', '.join(towns)}); name runs of one town")
@@ -81,6 +81,22 @@ def run(arguments: argparse.Namespace) -> int:
     finally:
         link.close()
     return 0
+
+
+def _read(folder: Path) -> History:
+    """Read the record of a run.
+
+    Raises:
+        UserError: there is none. If folders below hold records, as those of series and scenarios do, it names one.
+    """
+    below = (
+        []
+        if (folder / HISTORY_FILE).exists()
+        else sorted({each.resolve() for each in folder.glob(f"*/**/{HISTORY_FILE}")})
+    )
+    if below:
+        raise UserError(f"{folder} holds {len(below)} runs; name up to {MOST_RUNS} of them, such as {below[0].parent}")
+    return read_history(folder)
 
 
 def map_text(folder: Path, named: Path | None, town: str) -> str:

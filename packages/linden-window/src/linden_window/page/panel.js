@@ -194,6 +194,7 @@ export function showScore(panel) {
     const large = document.createElement("div");
     large.className = "large";
     large.textContent = panel.large;
+    large.append(Object.assign(document.createElement("span"), { className: "soft", textContent: " driving score so far" }));
     section.append(large);
   }
   section.append(lines);
