@@ -47,6 +47,13 @@ LOOK_AT_WALKERS = """(() => {
   page.map.centre = [best.x, best.y];
   page.cameras.lookAt(page.cameras.focus.clone().set(best.x, best.z, best.y), 38);
 })()"""
+LOOK_AT_SHAPES = """(() => {
+  const [x, y, z] = page.debug.shapes.map((shape) => shape.at ?? shape.from).at(-1);
+  page.hasPlace = true;
+  page.map.centre = [x, y];
+  page.map.metresPerPixel = 0.12;
+  page.cameras.lookAt(page.cameras.focus.clone().set(x, z, y), 26);
+})()"""
 RAINY_NIGHT = carla.WeatherParameters(
     cloudiness=100.0, precipitation=80.0, precipitation_deposits=90.0, wetness=100.0, sun_altitude_angle=-40.0
 )
@@ -182,12 +189,10 @@ def serve_scenes(pictures: Pictures, scenes: set[str], examples: Path | None) ->
         if "debug" in scenes and examples is not None:
             explorer = [sys.executable, str(examples / "util" / "lane_explorer.py"), "-p", str(port), "-i", "-s", "4"]
             start = world.get_map().get_spawn_points()[0].location
-            above = carla.Location(start.x - 14.0, start.y - 14.0, start.z + 16.0)
-            world.get_spectator().set_transform(carla.Transform(above, carla.Rotation(-30.0, 45.0, 0.0)))
             place = ["-x", f"{start.x:.1f}", "-y", f"{start.y:.1f}", "-z", f"{start.z:.1f}"]
             process = subprocess.Popen([*explorer, *place], stdout=subprocess.DEVNULL)
             try:
-                pictures.of("debug", address, "?view=spectator", "page.debug.shapes.length > 20")
+                pictures.of("debug", address, "?view=orbit", "page.debug.shapes.length > 20", LOOK_AT_SHAPES)
             finally:
                 process.terminate()
                 process.wait()

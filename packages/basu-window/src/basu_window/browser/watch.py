@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 import select
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ from basu.records.recording_files import MAP_FILE
 from basu.settings.resolve import resolve
 from basu_window.browser.film import check_film, write_film
 from basu_window.browser.frames import (
+    RUN_COLOURS,
     actors_note,
     mark_of,
     moment_of,
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 8
 PANEL_EVERY_S = 1.0
+_STARTED = re.compile(r"^\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -135,22 +138,27 @@ def _send(link: PageLink, folders: list[Path], histories: list[History], text: s
         notices += [notice] if notice else []
     link.note({"type": "actors", "actors": actors})
     link.note(route_note(first.facts.route, drives=False))
-    title = " beside ".join(folder.resolve().name for folder in folders)
-    facts = {"panels": panels_of(first, scorings[0], title), "marks": marks, "notice": " ".join(notices)}
+    facts = {"panels": panels_of(first, scorings[0], _name(folders[0])), "marks": marks, "notice": " ".join(notices)}
     link.blob("frames.bin", record_frames(histories))
     link.blob("facts.json", packed(facts))
-    links = {"frames": "record/frames.bin", "facts": "record/facts.json", "reports": _reports(link, folders)}
+    links = {"frames": "record/frames.bin", "facts": "record/facts.json", "runs": _runs(link, folders)}
     link.note({"type": "record", **links})
 
 
-def _reports(link: PageLink, folders: list[Path]) -> list[dict[str, str]]:
-    """Send the reports of the runs that have one, and return their names and paths for the page."""
+def _name(folder: Path) -> str:
+    """Return the name of a run's folder without the time of its start."""
+    return _STARTED.sub("", folder.resolve().name)
+
+
+def _runs(link: PageLink, folders: list[Path]) -> list[dict[str, Any]]:
+    """Send the reports of the runs that have one, and return name, colour and the report's path of each run."""
     found = []
-    for number, folder in enumerate(folders, 1):
+    for number, folder in enumerate(folders):
+        path = ""
         if (folder / REPORT_FILE).is_file():
-            link.blob(f"report-{number}.html", gzip.compress((folder / REPORT_FILE).read_bytes(), 6, mtime=0))
-            name = f"report of run {number}" if len(folders) > 1 else "report"
-            found.append({"name": name, "path": f"record/report-{number}.html"})
+            link.blob(f"report-{number + 1}.html", gzip.compress((folder / REPORT_FILE).read_bytes(), 6, mtime=0))
+            path = f"record/report-{number + 1}.html"
+        found.append({"name": _name(folder), "colour": RUN_COLOURS[number], "report": path})
     return found
 
 

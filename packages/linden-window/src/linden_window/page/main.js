@@ -10,7 +10,7 @@ import { DebugShapes } from "./debug.js";
 import { DrivingInput } from "./input.js";
 import { Map2d, colourOf, endsOf } from "./map2d.js";
 import { Panes } from "./panes.js";
-import { aboutActor, element, help, list, say, showReadings, showReports, showScore, unsay } from "./panel.js";
+import { aboutActor, element, help, list, say, showReadings, showRuns, showScore, unsay } from "./panel.js";
 import { Replay } from "./replay.js";
 import { Timeline } from "./timeline.js";
 import { World } from "./world.js";
@@ -202,10 +202,10 @@ class Page {
     this.replay.showMarks(marks);
   }
 
-  /** @param {{frames: string, facts: string, reports: {name: string, path: string}[]}} note */
+  /** @param {{frames: string, facts: string, runs: import("./panel.js").RecordedRun[]}} note */
   async record(note) {
     if (this.replay.isOn) return;
-    showReports(note.reports);
+    showRuns(note.runs);
     const [frames, facts] = await Promise.all([fetch(note.frames), fetch(note.facts)]);
     this.timeline.read(await frames.arrayBuffer());
     const told = await facts.json();

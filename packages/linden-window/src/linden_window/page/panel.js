@@ -4,6 +4,7 @@
 /** @typedef {import("./timeline.js").Pose} Pose */
 /** @typedef {import("./actors.js").Actor} Actor */
 /** @typedef {{name: string, value: string, bad?: boolean, bar?: number, turn?: number}} Line */
+/** @typedef {{name: string, colour: number[], report: string}} RecordedRun */
 /** @typedef {{groups: {name: string, lines: Line[]}[], impulses: number[], tally: string[]}} ReadingsNote */
 /** @typedef {{t: number, title: string, large?: string, lines: Line[], found: {text: string, bad?: boolean}[]}} ScorePanel */
 
@@ -168,16 +169,19 @@ function graphOf(impulses) {
   return canvas;
 }
 
-/** Show the links to the reports of recorded runs. @param {{name: string, path: string}[]} reports */
-export function showReports(reports) {
-  const links = reports.map(({ name, path }) => {
-    const link = document.createElement("a");
-    link.href = path;
-    link.textContent = name;
-    return link;
+/** Show the recorded runs with their colours and links to their reports. @param {RecordedRun[]} runs */
+export function showRuns(runs) {
+  const lines = runs.map(({ name, colour, report }) => {
+    const line = document.createElement("div");
+    const swatch = document.createElement("i");
+    swatch.style.background = `rgb(${colour.join(",")})`;
+    if (runs.length > 1) line.append(swatch, `${name} `);
+    const link = Object.assign(document.createElement("a"), { href: report, textContent: "report" });
+    if (report) line.append(link);
+    return line;
   });
-  element("reports").replaceChildren(...links);
-  element("reports").hidden = links.length === 0;
+  element("reports").replaceChildren(...lines);
+  element("reports").hidden = runs.length < 2 && !runs[0]?.report;
 }
 
 /** @param {ScorePanel} panel */
