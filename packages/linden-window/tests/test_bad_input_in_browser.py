@@ -44,11 +44,11 @@ def test_a_map_that_cannot_be_read_says_so_and_shows_actors(link: PageLink, brow
     link.note({"type": "map", "name": "Broken", "text": "<OpenDRIVE><road"})
     link.note({"type": "actors", "spectator": 0, "actors": [CAR]})
     page = page_of(browser, link.address)
-    page.wait_for_function("globalThis.page && " + SAYS.format(words="The map has no scenery"), timeout=WAIT_MS)
+    page.wait_for_function("globalThis.page && " + SAYS.format(words="The map has no scenery"))
     for frame in range(1, 6):
         show(link, 0.5 * frame, frame)
         page.wait_for_timeout(50)
-    page.wait_for_function("page.poses.length === 1", timeout=WAIT_MS)
+    page.wait_for_function("page.poses.length === 1")
     assert page.errors == []
     page.close()
 
@@ -57,7 +57,7 @@ def test_a_map_that_cannot_be_read_says_so_and_shows_actors(link: PageLink, brow
 def test_ten_pages_at_once_see_the_same_world_and_one_too_many_reads_why(browser: Browser, served: Served) -> None:
     pages = [page_of(browser, served.address + "?flat", 300, 300) for _ in range(MOST_PAGES)]
     for page in pages:
-        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=5), timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=5))
     further = page_of(browser, served.address + "?flat", 300, 300)
     further.wait_for_function(
         "globalThis.page && " + SAYS.format(words="There are enough pages already"), timeout=WAIT_MS
@@ -70,11 +70,11 @@ def test_ten_pages_at_once_see_the_same_world_and_one_too_many_reads_why(browser
 def test_a_page_that_floods_reads_why_it_was_closed_and_the_world_goes_on(browser: Browser, served: Served) -> None:
     good, bad = (page_of(browser, served.address + "?flat", 300, 300) for _ in range(2))
     for page in (good, bad):
-        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2), timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2))
     bad.evaluate("for (let sent = 0; sent < 2000; sent++) page.connection.send({ order: 'drive', held: [] })")
-    bad.wait_for_function(SAYS.format(words="too many messages"), timeout=WAIT_MS)
+    bad.wait_for_function(SAYS.format(words="too many messages"))
     count = good.evaluate("page.timeline.frames.length")
-    good.wait_for_function(GETS_FRAMES.format(count=count + 5), timeout=WAIT_MS)
+    good.wait_for_function(GETS_FRAMES.format(count=count + 5))
     client = carla.Client("127.0.0.1", served.port)
     client.set_timeout(60.0)
     world = client.get_world()
@@ -85,10 +85,10 @@ def test_a_page_that_floods_reads_why_it_was_closed_and_the_world_goes_on(browse
 
 def test_a_page_that_only_watches_cannot_change_the_world(browser: Browser, served: Served) -> None:
     page = page_of(browser, served.address + "?flat", 600, 400)
-    page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2), timeout=WAIT_MS)
+    page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2))
     assert not page.is_visible("#control")
     page.evaluate("page.connection.send({ order: 'pause', on: true })")
-    page.wait_for_function(SAYS.format(words="--window-control"), timeout=WAIT_MS)
+    page.wait_for_function(SAYS.format(words="--window-control"))
     page.close()
 
 
@@ -96,7 +96,7 @@ def test_the_page_names_a_server_that_was_killed(browser: Browser, tmp_path: Pat
     (tmp_path / "Street.xodr").write_text(SIGNS_AND_LIGHTS)
     with serving("--maps", tmp_path, "--map", "Street", "--window") as served:
         page = page_of(browser, served.address + "?flat", 600, 400)
-        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2), timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=2))
         served.process.kill()
-        page.wait_for_function(SAYS.format(words="has ended. Start it again"), timeout=WAIT_MS)
+        page.wait_for_function(SAYS.format(words="has ended. Start it again"))
         page.close()

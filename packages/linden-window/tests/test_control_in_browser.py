@@ -13,7 +13,7 @@ from linden.maps.library import MapLibrary
 from linden.world import World
 from opendrive_texts import SIGNS_AND_LIGHTS
 from served_windows import BY_PROCESSOR, Served, serving
-from window_pages import WAIT_MS, page_of
+from window_pages import page_of
 
 ON_SCREEN = """([x, y, z]) => { const at = page.cameras.focus.clone().set(x, z, y).project(page.cameras.camera);
     return [(at.x + 1) / 2 * innerWidth, (1 - at.y) / 2 * innerHeight]; }"""
@@ -44,7 +44,6 @@ def click(page: Page, place: list[float]) -> None:
 @pytest.mark.slow
 def test_a_click_spawns_a_vehicle_and_another_sends_it_somewhere(browser: Browser, served: Served) -> None:
     page = page_of(browser, served.address + "?view=map", 1200, 800)
-    page.set_default_timeout(WAIT_MS)
     page.wait_for_function("globalThis.page?.world.loaded > 0 && page.world.waiting.length + page.world.loading === 0")
     spawn = World(MapLibrary().from_opendrive(SIGNS_AND_LIGHTS)).spawn_points[0]
     x, y, z = spawn.location
@@ -82,7 +81,6 @@ def test_a_click_spawns_a_vehicle_and_another_sends_it_somewhere(browser: Browse
 @pytest.mark.slow
 def test_weather_pause_and_one_step_work_from_the_page(browser: Browser, served: Served) -> None:
     page = page_of(browser, served.address + "?flat", 1200, 800)
-    page.set_default_timeout(WAIT_MS)
     page.wait_for_function("globalThis.page?.timeline.frames.length > 2")
     page.select_option("[aria-label='Weather']", "rainy night")
     page.wait_for_function("page.world.isNight && page.world.rain.visible")
@@ -114,7 +112,6 @@ def test_sensors_of_the_chosen_vehicle_have_panes(browser: Browser, served: Serv
     )
     lidar.listen(lambda _measured: None)
     page = page_of(browser, served.address + "?flat", 1200, 800)
-    page.set_default_timeout(WAIT_MS)
     page.wait_for_function(f"globalThis.page?.poses.some(({{id}}) => id === {car.id})")
     assert not page.is_visible("#sensors"), "no actor is chosen"
     page.keyboard.press("f")

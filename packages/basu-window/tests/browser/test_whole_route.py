@@ -2,7 +2,6 @@
 
 import json
 import math
-import time
 from pathlib import Path
 
 import numpy as np
@@ -19,9 +18,11 @@ FASTEST_MPS = 5.8  # the limit is 6.7
 ACROSS_MPS2, SLOWS_MPS2 = 1.0, 1.0
 WHEELBASE_M, FRONT_M = 2.8, 2.0
 FULL_STEER_RAD = 1.22
-LIMIT_S = 900.0
+STUCK_S = 60.0
+"""Simulated time without progress after which the drive has failed; a busy machine takes more wall time."""
 STATE = """(() => { const pose = page.followed();
-  return pose && [pose.x, pose.y, pose.yaw, pose.speed, pose.steer, page.connection.hasEnded]; })()"""
+  return pose && [pose.x, pose.y, pose.yaw, pose.speed, pose.steer, page.connection.hasEnded,
+    page.timeline.time(page.timeline.last)]; })()"""
 
 
 class Hands:
@@ -91,7 +92,7 @@ class Driver:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(LIMIT_S + 300.0)
+@pytest.mark.timeout(1800.0)
 def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) -> None:
     words = ("run", "human", "--watch", "--routes", SHORT_ROUTE, "--output", tmp_path)
     with running_browser() as browser, started(*words) as (process, address):
@@ -100,11 +101,13 @@ def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) 
             "globalThis.page?.input.isOn && page.map.route.length && page.followed()", timeout=WAIT_MS
         )
         driver, hands = Driver(page), Hands(page)
-        until_s, used = time.monotonic() + LIMIT_S, {"keyboard": 0, "gamepad": 0, "wheel": 0}
+        used, reached_m, reached_s = {"keyboard": 0, "gamepad": 0, "wheel": 0}, 0.0, 0.0
         while (state := page.evaluate(STATE)) and not state[5] and process.poll() is None:
-            assert time.monotonic() < until_s, f"{driver.at_m:.0f} m of {driver.gone[-1]:.0f} m"
-            x, y, yaw, speed, turned, _ = state
+            x, y, yaw, speed, turned, _, now_s = state
             pedals, steer = driver.wishes(x, y, yaw, speed)
+            if driver.at_m > reached_m + 1.0:
+                reached_m, reached_s = driver.at_m, now_s
+            assert now_s < reached_s + STUCK_S, f"{reached_m:.0f} m of {driver.gone[-1]:.0f} m"
             share = driver.at_m / driver.gone[-1]
             if share < 1 / 3:
                 hands.keys(pedals, steer, turned / FULL_STEER_RAD)

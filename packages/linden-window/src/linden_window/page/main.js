@@ -156,6 +156,7 @@ class Page {
       const [spawn] = note.spawn_points ?? [];
       if (!this.hasPlace && spawn) this.cameras.lookAt(new Vector3(spawn[0], spawn[2], spawn[1]));
     }
+    if (this.map.signals.length) this.showSignals(this.map.signals);
     this.mapName = note.map;
     document.title = `${note.map} – window`;
     this.control.show(note.control);
@@ -191,6 +192,7 @@ class Page {
   /** @param {number[]} states of the route's lights, -1 for signs */
   showSignals(states) {
     this.map.signals = states;
+    this.world.setSignals(new Map(this.map.controls.map(({ id }, index) => [id, states[index]])));
     this.lines.forEach((line, index) => line.color.set(colourOf(this.map.controls[index], states[index])));
   }
 

@@ -14,7 +14,7 @@ const SIGNS = /** @type {Record<string, string>} */ ({ stop_sign: "#c8102e", yie
 const LIGHTS = ["#d0021b", "#e8b400", "#1f9d45"];
 const UNKNOWN = "#8a9099";
 
-/** @typedef {{kind: string, x: number, y: number, z: number, yaw: number}} Control */
+/** @typedef {{kind: string, id: string, x: number, y: number, z: number, yaw: number}} Control */
 
 /** Return the colour of a line of the route. @param {Control} control @param {number | undefined} state of a light */
 export function colourOf(control, state) {
@@ -221,7 +221,7 @@ export class Map2d {
     const least = 2.5 * this.metresPerPixel;
     const a = Math.max(actor.box[3], least), b = Math.max(actor.box[4], least);
     context.globalAlpha = pose.ghost ? 0.5 : 1;
-    context.fillStyle = isFocus ? FOCUS : colour;
+    context.fillStyle = isFocus ? FOCUS : pose.ghost ? `rgb(${actor.colour.join(",")})` : colour;
     context.beginPath();
     context.moveTo(actor.box[0] + a + 0.25 * b, 0);
     context.lineTo(actor.box[0] + a * 0.8, b);
