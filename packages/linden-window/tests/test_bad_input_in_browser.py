@@ -12,7 +12,7 @@ from linden_window.hub import MOST_PAGES
 from linden_window.link import PageLink
 from opendrive_texts import SIGNS_AND_LIGHTS
 from served_windows import Served, serving
-from window_pages import CAR, WAIT_MS, begin, page_of, show
+from window_pages import CAR, begin, page_of, show
 
 SAYS = "document.getElementById('says').innerText.includes({words!r})"
 GETS_FRAMES = "page.timeline.frames.length > {count}"
@@ -59,9 +59,7 @@ def test_ten_pages_at_once_see_the_same_world_and_one_too_many_reads_why(browser
     for page in pages:
         page.wait_for_function("globalThis.page && " + GETS_FRAMES.format(count=5))
     further = page_of(browser, served.address + "?flat", 300, 300)
-    further.wait_for_function(
-        "globalThis.page && " + SAYS.format(words="There are enough pages already"), timeout=WAIT_MS
-    )
+    further.wait_for_function("globalThis.page && " + SAYS.format(words="There are enough pages already"))
     assert all(page.errors == [] for page in pages)
     for page in [*pages, further]:
         page.close()

@@ -12,7 +12,7 @@ from basu.records.history.files import read_history
 from basu_fixtures import SHORT_ROUTE
 from browsers import running_browser
 from page_drives import PAD, WHEEL, started
-from window_pages import WAIT_MS, page_of
+from window_pages import page_of
 
 FASTEST_MPS = 5.8  # the limit is 6.7
 ACROSS_MPS2, SLOWS_MPS2 = 1.0, 1.0
@@ -97,9 +97,7 @@ def test_keyboard_gamepad_and_wheel_drive_the_whole_short_route(tmp_path: Path) 
     words = ("run", "human", "--watch", "--routes", SHORT_ROUTE, "--output", tmp_path)
     with running_browser() as browser, started(*words) as (process, address):
         page = page_of(browser, address + "?flat")
-        page.wait_for_function(
-            "globalThis.page?.input.isOn && page.map.route.length && page.followed()", timeout=WAIT_MS
-        )
+        page.wait_for_function("globalThis.page?.input.isOn && page.map.route.length && page.followed()")
         driver, hands = Driver(page), Hands(page)
         used, reached_m, reached_s = {"keyboard": 0, "gamepad": 0, "wheel": 0}, 0.0, 0.0
         while (state := page.evaluate(STATE)) and not state[5] and process.poll() is None:

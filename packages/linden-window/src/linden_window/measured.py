@@ -1,6 +1,6 @@
 """How measurements of sensors are shown: pictures as red, green and blue, points from above, and readings in words.
 
-The arrays are those that CARLA's client hands to a listener, and those that `linden.sensors` measures.
+The arrays come from the listeners of CARLA's client or from `linden.sensors`.
 """
 
 import math
