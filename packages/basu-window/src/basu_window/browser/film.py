@@ -91,26 +91,26 @@ def _pictures(link: PageLink, times_s: list[float]) -> Iterator[bytes]:
     from playwright.sync_api import Error, sync_playwright  # noqa: PLC0415 - an extra
 
     width, height = SIZE_PX
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=browser_path(), args=list(SWITCHES), timeout=1000.0 * PATIENCE_S
-        )
-        try:
+    patience_ms = 1000.0 * PATIENCE_S
+    try:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(
+                executable_path=browser_path(), args=list(SWITCHES), timeout=patience_ms
+            )
             page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True)
-            page.set_default_timeout(1000.0 * PATIENCE_S)
+            page.set_default_timeout(patience_ms)
             page.goto(f"{link.address}?view=chase&film", wait_until="commit")
             _wait_until_loaded(page, link)
             for t_s in times_s:
-                page.evaluate(_SHOW, [t_s, 1.0 / PICTURES_PER_S, 1000.0 * PATIENCE_S])
+                page.evaluate(_SHOW, [t_s, 1.0 / PICTURES_PER_S, patience_ms])
                 yield page.screenshot(type="jpeg", quality=92)
-        except Error as error:
-            raise UserError(
-                f"the film is not complete: {error.message.splitlines()[0]}. The browser showed nothing new for "
-                f"{PATIENCE_S:.0f} s, or has ended; try again, with fewer other programs or a part of the run "
-                "(--film-from, --film-to)"
-            ) from error
-        finally:
             browser.close()
+    except Error as error:
+        raise UserError(
+            f"the film is not complete: {error.message.splitlines()[0]}. The browser showed nothing new for "
+            f"{PATIENCE_S:.0f} s, or has ended; try again, with fewer other programs or a part of the run "
+            "(--film-from, --film-to)"
+        ) from error
 
 
 def _wait_until_loaded(page: Page, link: PageLink) -> None:
