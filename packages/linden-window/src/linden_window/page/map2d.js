@@ -183,6 +183,8 @@ export class Map2d {
   drawShapes(shapes) {
     const { context } = this;
     const pixel = this.metresPerPixel;
+    /** @type {Map<string, number>} texts at one place stand below each other */
+    const texts = new Map();
     for (const shape of shapes) {
       const colour = `rgb(${shape.colour.join(",")})`;
       context.fillStyle = colour;
@@ -194,8 +196,11 @@ export class Map2d {
         context.font = `bold ${12 * pixel}px sans-serif`;
         context.lineWidth = 3 * pixel;
         context.strokeStyle = "rgba(0, 0, 0, .75)";
-        context.strokeText(shape.text, shape.at[0], shape.at[1]);
-        context.fillText(shape.text, shape.at[0], shape.at[1]);
+        const place = shape.at.slice(0, 2).map(Math.round).join();
+        const line = texts.get(place) ?? 0;
+        texts.set(place, line + 1);
+        context.strokeText(shape.text, shape.at[0], shape.at[1] + 13 * pixel * line);
+        context.fillText(shape.text, shape.at[0], shape.at[1] + 13 * pixel * line);
       } else {
         const ends = segmentsOf(shape);
         context.strokeStyle = colour;
