@@ -59,7 +59,7 @@ def test_a_click_spawns_a_vehicle_and_another_sends_it_somewhere(browser: Browse
     assert (yaw - spawn.rotation.yaw + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=3.0), "along its lane"
     click(page, page.evaluate(POSE.format(id=car)))
     page.wait_for_function(f"page.chosen === {car}")
-    assert "vehicle.tesla.model3" in page.inner_text("#actor")
+    page.wait_for_function("document.getElementById('actor').innerText.includes('vehicle.tesla.model3')")
     page.click("text=Send somewhere")
     page.wait_for_timeout(300)
     x, y, z = page.evaluate(POSE.format(id=car))

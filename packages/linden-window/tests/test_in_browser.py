@@ -2,6 +2,7 @@
 
 import select
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -79,6 +80,27 @@ def test_the_page_says_when_the_program_has_ended(link: PageLink, browser: Brows
     page.wait_for_function("globalThis.page?.connection.bytes > 0")
     link.close()
     page.wait_for_function("document.getElementById('says').innerText.includes('has ended')")
+    page.close()
+
+
+def test_a_page_connects_again_and_the_keys_that_are_down_hold(link: PageLink, browser: Browser) -> None:
+    begin(link)
+    link.note({"type": "route", "ego": 7, "drives": True, "stops": [], "points": [], "controls": [], "half": 1.75})
+    page = page_of(browser, link.address + "?flat")
+    page.wait_for_function("globalThis.page?.input.isOn")
+    page.keyboard.down("w")
+    found: list[dict[str, Any]] = []
+
+    def driven(number: int) -> bool:
+        return any(order["order"] == "drive" and order["held"] and order["page"] == number for order in found)
+
+    for number in (1, 2):
+        while not driven(number) and link.is_open:
+            select.select([link], [], [], 1.0)
+            found += link.orders()
+        page.evaluate("page.connection.socket.close(4000, 'keepalive ping timeout')")
+        page.wait_for_function("document.getElementById('says').innerText.includes('tries to connect again')")
+    assert page.errors == []
     page.close()
 
 

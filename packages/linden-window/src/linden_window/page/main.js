@@ -80,6 +80,7 @@ class Page {
     this.panes = new Panes((order) => this.connection.send(order));
     this.connection = new Connection(
       (note) => this.note(note), (frame) => this.arrived(frame), (pane) => this.panes.take(pane), (sentence) => say(sentence, true),
+      () => this.input.again(),
     );
     this.input = new DrivingInput((order) => this.connection.send(order));
     this.control = controlOf((order) => this.connection.send(order));
