@@ -94,6 +94,7 @@ def ticks(world: World) -> None:
     print(
         f"watched: more          {1e3 * median(watched_s):.3f} ms (90th percentile {1e3 * quantile(watched_s):.3f} ms)"
     )
+    print(f"processor time of it   {1e3 * median(busy_s):.3f} ms")
     print(f"bytes of a frame       {int(median(sizes)):,}; at 20 frames/s {20 * median(sizes) / 1000:.0f} kB/s")
     print(f"dropped frames         {link.dropped} of {TICKS}")
 

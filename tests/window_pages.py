@@ -43,7 +43,8 @@ def page_of(browser: "Browser", address: str, width: int = 900, height: int = 60
     page.errors = []
     page.on("pageerror", lambda error: page.errors.append(str(error)))
     page.on("request", lambda request: page.errors.append(request.url) if "127.0.0.1" not in request.url else None)
-    page.goto(address)
+    page.set_default_timeout(WAIT_MS)
+    page.goto(address, wait_until="commit")
     return page
 
 

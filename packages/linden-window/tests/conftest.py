@@ -48,12 +48,16 @@ class Recorder(PageLink):
         super().__init__(ours, None, "")
         self.notes: list[dict[str, object]] = []
         self.frames: list[bytes] = []
+        self.panes: list[tuple[str, bytes]] = []
 
     def note(self, facts: dict[str, object]) -> None:
         self.notes.append(json.loads(json.dumps(facts)))
 
     def frame(self, packed: bytes) -> None:
         self.frames.append(packed)
+
+    def pane(self, name: str, packed: bytes) -> None:
+        self.panes.append((name, packed))
 
     def of(self, kind: str) -> list[dict[str, object]]:
         return [note for note in self.notes if note["type"] == kind]

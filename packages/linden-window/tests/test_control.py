@@ -8,6 +8,7 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.server.frame_clock import FrameClock
 from linden.world import World
 from linden_window.control import FASTEST, carry_out
+from linden_window.errands import Errands
 
 
 @pytest.fixture
@@ -16,7 +17,7 @@ def context(world: World) -> SimpleNamespace:
 
 
 def order(context: SimpleNamespace, clock: FrameClock, **values: object) -> str:
-    return carry_out(values, context, clock)
+    return carry_out(values, context, clock, Errands(context.world, print))
 
 
 def test_a_pause_stops_the_clock_and_a_step_makes_one_frame(context: SimpleNamespace) -> None:
@@ -35,7 +36,7 @@ def test_a_client_that_ticks_keeps_time_for_itself(context: SimpleNamespace) -> 
     context.world.settings = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
     clock = FrameClock(0.0)
     for values in ({"order": "pause", "on": True}, {"order": "step"}, {"order": "speed", "value": 2}):
-        assert "synchronous mode" in carry_out(values, context, clock)
+        assert "synchronous mode" in carry_out(values, context, clock, Errands(context.world, print))
     assert (clock.is_paused, clock.speed) == (False, 1.0)
 
 
@@ -80,7 +81,7 @@ def test_an_order_that_cannot_be_carried_out_gets_a_sentence_and_changes_nothing
     context: SimpleNamespace, values: dict[str, object]
 ) -> None:
     before = len(context.world.episode.actors), context.world.episode.weather
-    said = carry_out(values, context, FrameClock(0.0))
+    said = carry_out(values, context, FrameClock(0.0), Errands(context.world, print))
     assert len(said) > 20
     assert (len(context.world.episode.actors), context.world.episode.weather) == before
 

@@ -2,74 +2,34 @@
 
 import asyncio
 import json
-import re
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 
 import carla
-import psutil
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
 from linden_window.poses import HEADER
 from opendrive_texts import SIGNS_AND_LIGHTS
-from servers import READY
+from served_windows import Served, serving
 from window_pages import fetched
 
 LIMIT_S = 60.0
-
-
-class Served:
-    """A server with a window, and what it printed."""
-
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process, said = process, ""
-        while (ready := READY.search(said)) is None:
-            line = process.stdout.readline()
-            assert line, said
-            said += line
-        self.port = int(ready[1])
-        self.address = re.search(r"linden: window (http://127\.0\.0\.1:\d+/\S+/)", said)[1]
-
-    @property
-    def pages(self) -> psutil.Process:
-        """The process of the pages."""
-        (found,) = [p for p in psutil.Process(self.process.pid).children() if "linden_window" in p.cmdline()]
-        return found
-
-    def live(self) -> connect:
-        headers = {"Origin": "http://127.0.0.1:1"}
-        return connect(self.address.replace("http:", "ws:") + "live", additional_headers=headers, max_size=None)
 
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     folder = tmp_path_factory.mktemp("maps")
     (folder / "Street.xodr").write_text(SIGNS_AND_LIGHTS)
-    process = subprocess.Popen(
-        [
-            sys.executable,
-            "-m",
-            "linden.cli",
-            "serve",
-            "--port",
-            "0",
-            "--maps",
-            folder,
-            "--map",
-            "Street",
-            "--window-control",
-        ],
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        yield Served(process)
-    finally:
-        process.kill()
-        process.wait()
+    with serving("--maps", folder, "--map", "Street", "--window-control") as found:
+        yield found
+
+
+def live(served: Served) -> connect:
+    headers = {"Origin": "http://127.0.0.1:1"}
+    return connect(served.address.replace("http:", "ws:") + "live", additional_headers=headers, max_size=None)
 
 
 async def until(page: ClientConnection, holds) -> dict:
@@ -88,7 +48,7 @@ async def frame(page: ClientConnection) -> tuple:
 
 def test_a_page_gets_scene_actors_and_frames_and_changes_the_weather(served: Served) -> None:
     async def watch() -> None:
-        async with served.live() as page:
+        async with live(served) as page:
             scene = await until(page, lambda note: note["type"] == "scene" and note["ready"])
             assert (scene["map"], scene["control"]) == ("Street", True)
             tile = scene["tiles"][0]["name"]
@@ -106,7 +66,7 @@ def test_a_page_gets_scene_actors_and_frames_and_changes_the_weather(served: Ser
 
 def test_a_pause_holds_the_frames_until_the_world_goes_on(served: Served) -> None:
     async def pause() -> tuple[int, int]:
-        async with served.live() as page:
+        async with live(served) as page:
             await page.send(json.dumps({"order": "pause", "on": True}))
             await until(page, lambda note: note.get("text") == "The world is paused.")
             held = await frame_after_silence(page)

@@ -1,9 +1,6 @@
 """Claims about drives in a real browser: a person at the keyboard and at a gamepad, and the slider of a record."""
 
-import re
-import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -11,39 +8,18 @@ from playwright.sync_api import Browser
 
 from basu.output.report.html.page import write_report
 from basu.records.history.files import read_history
-from basu_fixtures import BASU, SHORT_ROUTE
+from basu_fixtures import SHORT_ROUTE
 from browsers import running_browser
 from fakes.run_records import crashing, record, written
 from opendrive_texts import SIGNS_AND_LIGHTS
-from window_pages import WAIT_MS, page_of
-
-PAD = """navigator.getGamepads = () => [{{id: "Pad", connected: true, mapping: "standard", axes: [{steer}, 0, 0, 0],
-  buttons: Array.from({{length: 17}}, (_, at) => ({{value: at === 7 ? {throttle} : at === 6 ? {brake} : 0}}))}}]"""
-
-WHEEL = """navigator.getGamepads = () => [{{id: "G29 Driving Force Racing Wheel", connected: true, mapping: "",
-  axes: [{steer}, 0, {throttle}, {brake}, 0, 0], buttons: Array.from({{length: 25}}, () => ({{value: 0}}))}}]"""
+from page_drives import PAD, WHEEL, started
+from window_pages import page_of
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with running_browser() as found:
         yield found
-
-
-@contextmanager
-def started(*words: str | Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """Run a command until it prints the page's address."""
-    process = subprocess.Popen([*BASU, *words], stdout=subprocess.PIPE, text=True)
-    try:
-        said = ""
-        while (found := re.search(r"http://\S+/", said)) is None:
-            line = process.stdout.readline()
-            assert line, said
-            said += line
-        yield process, found[0]
-    finally:
-        process.kill()
-        process.wait()
 
 
 def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: Path) -> None:
@@ -53,20 +29,20 @@ def test_a_record_plays_with_slider_marks_and_panel(browser: Browser, tmp_path: 
     (tmp_path / "street.xodr").write_text(SIGNS_AND_LIGHTS)
     with started("watch", folder, "--map", tmp_path / "street.xodr") as (_, address):
         page = page_of(browser, address + "?flat&t=10")
-        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1", timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1")
         assert page.evaluate("page.timeline.frames.length") == len(crashing().frames)
         assert page.locator("#ticks button").count() == 3
-        page.wait_for_function("document.getElementById('score').innerText.includes('stop sign')", timeout=WAIT_MS)
+        page.wait_for_function("document.getElementById('score').innerText.includes('stop sign')")
         page.locator("#ticks button").first.click(force=True)
         before = page.evaluate("page.replay.clock")
         page.keyboard.press("ArrowRight")
-        page.wait_for_function(f"page.replay.clock > {before}", timeout=WAIT_MS)
+        page.wait_for_function(f"page.replay.clock > {before}")
         page.keyboard.press("Space")
-        page.wait_for_function(f"page.replay.clock > {before} + 1", timeout=WAIT_MS)
+        page.wait_for_function(f"page.replay.clock > {before} + 1")
         page.click("#reports a")
         page.click('#map a[href="#infraction-3"]')
         page.click("#infraction-3 .replay a")
-        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1", timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page?.replay.isOn && page.poses.length === 1")
         assert page.evaluate("page.replay.clock") == pytest.approx(4.7)
         assert page.errors == []
         page.close()
@@ -78,25 +54,25 @@ def test_a_person_drives_by_keyboard_gamepad_and_wheel(browser: Browser, tmp_pat
     with started(*words) as (process, address):
         page = page_of(browser, address + "?flat")
         speed = "(page.followed()?.speed ?? 0)"
-        page.wait_for_function("globalThis.page?.input.isOn && page.poses.length > 0", timeout=WAIT_MS)
+        page.wait_for_function("globalThis.page?.input.isOn && page.poses.length > 0")
         page.keyboard.down("w")
-        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} > 2")
         page.keyboard.up("w")
         page.keyboard.down(" ")
         page.keyboard.down("s")
-        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} < 0.1")
         page.keyboard.up("s")
         page.keyboard.up(" ")
         page.evaluate(PAD.format(steer=0.0, throttle=0.8, brake=0))
-        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} > 2")
         page.evaluate(PAD.format(steer=0.5, throttle=0, brake=1))
-        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} < 0.1")
         page.evaluate(WHEEL.format(steer=0, throttle=1, brake=1))  # its pedals rest at 1 and are pressed at -1
         page.wait_for_timeout(200)
         page.evaluate(WHEEL.format(steer=0.1, throttle=-1, brake=1))
-        page.wait_for_function(f"{speed} > 2", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} > 2")
         page.evaluate(WHEEL.format(steer=0.1, throttle=1, brake=-1))
-        page.wait_for_function(f"{speed} < 0.1", timeout=WAIT_MS)
+        page.wait_for_function(f"{speed} < 0.1")
         assert "a person" in page.inner_text("#score")
         assert page.errors == []
         page.keyboard.press("Escape")

@@ -2,7 +2,11 @@
 
 import contextlib
 import json
+import os
+import select
+import socket
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -82,18 +86,24 @@ class Page:
             link = start(*options, **places)
             self._thread = threading.Thread(target=self._read, args=(link.address,))
             self._thread.start()
+            with socket.socket(fileno=os.dup(link.fileno())) as waiting:
+                until_s = time.monotonic() + 60.0
+                while time.monotonic() < until_s:
+                    readable, _, _ = select.select([waiting], [], [], 1.0)
+                    if readable and waiting.recv(65536, socket.MSG_PEEK).count(b"\n") > len(self.orders):
+                        break  # the number of pages and all orders: the drive begins with them
             return link
 
         monkeypatch.setattr(PageLink, "start", started)
 
     def _read(self, address: str) -> None:
         origin = address.rsplit("/", 2)[0]
-        with connect(address.replace("http", "ws") + "live", origin=Origin(origin), max_size=None) as socket:
+        with connect(address.replace("http", "ws") + "live", origin=Origin(origin), max_size=None) as page:
             for order in self.orders:
-                socket.send(json.dumps(order))
+                page.send(json.dumps(order))
             with contextlib.suppress(ConnectionClosed):
                 while True:
-                    self._keep(socket.recv())
+                    self._keep(page.recv())
 
     def _keep(self, message: str | bytes) -> None:
         if isinstance(message, str):

@@ -16,7 +16,6 @@ from basu_window.browser.readings import (
     Inertial,
     Readings,
     clock,
-    compass_point,
     felt,
     fix_of,
     heading_deg,
@@ -26,6 +25,7 @@ from basu_window.browser.readings import (
     true_latitude_deg,
     weather_words,
 )
+from linden_window.measured import compass_point
 
 STILL = Ego(*[0.0] * 15)
 

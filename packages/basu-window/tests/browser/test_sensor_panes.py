@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from basu_window.browser.sensor_panes import MOST_WIDE_PX, picture, readings, tag_colours
+from basu_window.browser.sensor_panes import picture, readings
 from linden_window import panes
+from linden_window.measured import MOST_WIDE_PX, tag_colours
 
 
 def image(bgra: list[tuple[int, int, int, int]], width: int | None = None) -> Any:

@@ -82,6 +82,14 @@ def test_no_folder_and_too_many_runs_get_a_sentence(tmp_path: Path) -> None:
         run(arguments(*[tmp_path] * (MOST_RUNS + 1)))
 
 
+def test_a_folder_of_runs_names_one_of_them(tmp_path: Path) -> None:
+    for name in ("b", "a"):
+        written(tmp_path / "series" / name, record(crashing()))
+    (tmp_path / "series" / "latest").symlink_to("b")
+    with pytest.raises(UserError, match=r"series holds 2 runs; name up to 8 of them, such as .*/series/a$"):
+        run(arguments(tmp_path / "series"))
+
+
 def test_a_run_on_a_map_that_is_not_there_names_the_option(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="name its OpenDRIVE file"):
         map_text(tmp_path, None, "Nowhere")

@@ -2,7 +2,10 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from linden.blueprints.library import BlueprintKind
 from linden.errors import Refusal
@@ -15,22 +18,28 @@ from linden.server.rpc import scene
 if TYPE_CHECKING:
     from linden.server.frame_clock import FrameClock
     from linden.server.rpc.context import Context
+    from linden_window.errands import Errands
+
+    _Action = Callable[[dict[str, Any], Context, FrameClock], str]
 
 SLOWEST, FASTEST = 0.1, 8.0
 _ABOVE_M = 0.3
 """How far above the clicked ground a vehicle is spawned, so that its wheels are not in it."""
 
 
-def carry_out(order: dict[str, Any], context: "Context", clock: "FrameClock") -> str:
+def carry_out(order: dict[str, Any], context: "Context", clock: "FrameClock", errands: "Errands") -> str:
     """Carry out an order; return a sentence for the pages, "" if there is nothing to say."""
-    action = _ACTIONS.get(order["order"])
+    if order["order"] == "send":
+        action: _Action | None = partial(_send, errands)
+    else:
+        action = _ACTIONS.get(order["order"])
     if action is None:
         return ""
     try:
         return action(order, context, clock)
     except Refusal as refusal:
         return str(refusal)
-    except (KeyError, TypeError, ValueError) as error:
+    except (IndexError, KeyError, TypeError, ValueError) as error:
         return f"The page sent an order that cannot be read ({error!r}); load it again."
 
 
@@ -71,7 +80,10 @@ def _spawn(order: dict[str, Any], context: "Context", _clock: "FrameClock") -> s
     blueprint = context.world.library.find(str(order["type"]))
     if blueprint.kind not in (BlueprintKind.VEHICLE, BlueprintKind.WALKER, BlueprintKind.PROP):
         return f"{order['type']} cannot be spawned with a click; choose a vehicle, a walker or a prop."
-    x, y, z = (_number(value) for value in order["place"])
+    x, y = (_number(value) for value in order["place"][:2])
+    above = order["place"][2]  # a click on a map in two dimensions names no height
+    heights, _ = context.world.episode.map.ground.surfaces_under([[x, y, 0.0]])
+    z = float(heights[0]) if above is None else _number(above)
     above_m = _ABOVE_M + (blueprint.box.extent.z if blueprint.kind is BlueprintKind.WALKER else 0.0)
     place = Transform(Vector3D(x, y, z + above_m), Rotation(0.0, _number(order["yaw"]), 0.0))
     role = AttributeValue("role_name", AttributeType.STRING, "window")
@@ -86,6 +98,13 @@ def _destroy(order: dict[str, Any], context: "Context", _clock: "FrameClock") ->
     return f"Actor {int(order['id'])} is destroyed."
 
 
+def _send(errands: "Errands", order: dict[str, Any], context: "Context", _clock: "FrameClock") -> str:
+    """Send an actor along the way that the process of the pages has found."""
+    errands.send(int(order["id"]), np.array([[_number(value) for value in point] for point in order["way"]]))
+    context.frame_is_due = True
+    return f"Actor {int(order['id'])} is on its way."
+
+
 def _number(value: object) -> float:
     number = float(value)  # type: ignore[arg-type] # what is no number raises TypeError
     if not math.isfinite(number):
@@ -93,7 +112,7 @@ def _number(value: object) -> float:
     return number
 
 
-_ACTIONS: "dict[str, Callable[[dict[str, Any], Context, FrameClock], str]]" = {
+_ACTIONS: "dict[str, _Action]" = {
     "pause": _pause,
     "step": _step,
     "speed": _speed,

@@ -187,7 +187,7 @@ class PageServer:
             while True:
                 await queue.wakes.wait()
                 if queue.is_overrun:
-                    await connection.close(1013, "This page reads too slowly for this world; load it again.")
+                    await connection.close(1011, "This page reads too slowly for this world.")  # it connects again
                     return
                 for message in queue.take():
                     await asyncio.wait_for(connection.send(message), _WAITS_S)

@@ -4,6 +4,7 @@
 """
 
 import json
+import math
 import struct
 from collections.abc import Sequence
 from typing import Any
@@ -16,6 +17,7 @@ HEADER = struct.Struct("<II")
 POINT = np.dtype([("place", "<i2", 2), ("colour", "u1", 3), ("unused", "u1")])
 """A point from above: cm ahead and to the right of the sensor, and its colour."""
 _MOST_CM = 32767.0
+MOST_POINTS = 20_000
 
 
 def picture(name: str, frame: int, rgb: NDArray[np.uint8]) -> bytes:
@@ -25,7 +27,12 @@ def picture(name: str, frame: int, rgb: NDArray[np.uint8]) -> bytes:
 
 
 def points(name: str, frame: int, places_m: NDArray[np.floating[Any]], colours: NDArray[np.uint8]) -> bytes:
-    """Return the pane of points: (N, 2) m ahead and to the right, and (N, 3) colours; farther than 327 m is cut."""
+    """Return the pane of points: (N, 2) m ahead and to the right, and (N, 3) colours.
+
+    Points farther than 327 m are cut, and more than ``MOST_POINTS`` are thinned.
+    """
+    every = math.ceil(len(places_m) / MOST_POINTS) or 1
+    places_m, colours = places_m[::every], colours[::every]
     rows = np.zeros(len(places_m), POINT)
     rows["place"] = np.rint(np.clip(places_m * 100.0, -_MOST_CM, _MOST_CM))
     rows["colour"] = colours

@@ -87,6 +87,7 @@ def _made(world: MapText, cache: MapCache) -> bytes:
         "tiles": [{"name": tile.name, "low": tile.low_m, "high": tile.high_m} for tile in tiles],
         "triangles": len(mesh.triangles),
         "spawn_points": [(*spawn.location, spawn.rotation.yaw) for spawn in world_map.spawn_points],
+        "signals": [signal.signal_id for signal in world_map.signals if signal.is_light],
         **_switched(things),
     }
     files = {**{tile.name: tile.content for tile in tiles}, "outline.json": outline}

@@ -30,7 +30,10 @@ FIRST_OTHER = 1000
 RUN_IDS = 1 << 24
 """Ids of each further run of a comparison begin so much higher."""
 EGO_COLOUR = (236, 236, 228)
-GHOST_COLOURS = ((236, 236, 228), (70, 130, 220), (230, 150, 40), (120, 190, 90))
+RUN_COLOURS = (
+    EGO_COLOUR, (70, 130, 220), (230, 150, 40), (120, 190, 90), (200, 80, 140), (90, 190, 200), (170, 130, 220),
+    (150, 120, 90),
+)  # fmt: skip
 OTHER_COLOURS = ((120, 124, 130), (150, 60, 55), (60, 88, 130), (196, 196, 190), (70, 100, 80), (166, 140, 90))
 _HALF_HEIGHT_M = {"vehicle": 0.8, "walker": 0.93, "prop": 0.5}
 MPS_TO_KMH = 3.6
@@ -85,7 +88,9 @@ def actors_note(facts: Facts, names: str, run: int = 0) -> list[dict[str, Any]]:
     """Return what the page needs to know of the vehicle under test, called ``names``, and of all others."""
     vehicle = facts.vehicle
     half_m = (vehicle.front_m + vehicle.rear_m) / 2.0
-    ego = _actor(EGO_ID + run * RUN_IDS, vehicle.type_id, (half_m, vehicle.width_m / 2.0), GHOST_COLOURS[run % 4])
+    ego = _actor(
+        EGO_ID + run * RUN_IDS, vehicle.type_id, (half_m, vehicle.width_m / 2.0), RUN_COLOURS[run % len(RUN_COLOURS)]
+    )
     ego["role"] = names
     ego["box"][0] = (vehicle.front_m - vehicle.rear_m) / 2.0
     found = [ego]
@@ -117,7 +122,14 @@ def route_note(route: Route, *, drives: bool) -> dict[str, Any]:
     points = np.round(route.points_m[::step], 2).tolist()
     half_m = 0.5 * float(np.median(route.lane_width_m))
     controls = [
-        {"kind": control.kind.value, "x": control.x_m, "y": control.y_m, "z": control.z_m, "yaw": control.yaw_rad}
+        {
+            "kind": control.kind.value,
+            "id": control.landmark_id,
+            "x": control.x_m,
+            "y": control.y_m,
+            "z": control.z_m,
+            "yaw": control.yaw_rad,
+        }
         for control in route.controls
     ]
     stops = [{"name": stop.name, "x": stop.x_m, "y": stop.y_m} for stop in route.stops]

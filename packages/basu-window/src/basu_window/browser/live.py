@@ -227,7 +227,7 @@ class WatchManager(BaseManager):
             frame.tick * self._run.step_s, ego.speed_mps, limit_mps, self._live.routes.progress.s_m,
             max(recent, default=0.0), self._live.agents.manual,
         )  # fmt: skip
-        title = f"{self._agent} on {self._run.route.id}"
+        title = f"{self._agent} on route {self._run.route.id}"
         return panel_note(title, self._run.route, moment, judged.scores, judged.found)
 
     def _recorded(self, frame: Frame) -> np.ndarray[Any, Any]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
+from linden_window.measured import compass_point
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -30,7 +32,6 @@ SENSOR_WORDS = {
     "lane_invasion": "lane",
     "obstacle": "obstacle",
 }
-POINTS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
 
 class Fix(NamedTuple):
@@ -197,11 +198,6 @@ def signed(values: tuple[float, ...]) -> str:
 def heading_deg(yaw_rad: float) -> float:
     """From north, clockwise, in [0, 360): CARLA's yaw is from east."""
     return (math.degrees(yaw_rad) + 90.0) % 360.0
-
-
-def compass_point(degrees: float) -> str:
-    """Return the nearest of the eight points of the compass."""
-    return POINTS[round(degrees / 45.0) % 8]
 
 
 def felt(ego: Ego) -> Inertial:

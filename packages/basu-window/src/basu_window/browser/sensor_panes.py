@@ -8,24 +8,14 @@ from typing import TYPE_CHECKING, Any
 import carla
 import numpy as np
 
-from basu_window.browser.readings import compass_point, degrees, fix_of
+from basu_window.browser.readings import degrees, fix_of
 from linden_window import panes
+from linden_window.measured import imu_lines, lidar_points, radar_points, rgb_of, tag_colours
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FAR_M = 1000.0
-"""Distance that a depth of 1 means: CARLA's sensor reference, "Depth camera"."""
-NEAR_M = 1.0
-"""A surface that is nearer than this is black in a depth picture."""
-MOVING_MPS = 0.5
-"""Radar echoes that approach or recede faster than this are yellow."""
-WHITE, YELLOW = (235, 235, 235), (250, 205, 60)
 SEMANTIC_RAY = np.dtype([("xyz", "<f4", (3,)), ("cos", "<f4"), ("id", "<u4"), ("tag", "<u4")])
-GOLDEN = 0.618034
-"""Share of a turn by which the hue differs from tag to tag, so that neighbours differ."""
-MOST_WIDE_PX = 640
-MOST_POINTS = 20_000
 
 
 def pane(name: str, type_id: str, frame: int, measured: Any, carla_map: carla.Map) -> bytes:  # noqa: ANN401 - of carla
@@ -42,9 +32,7 @@ def pane(name: str, type_id: str, frame: int, measured: Any, carla_map: carla.Ma
         return panes.picture(name, frame, picture(measured, type_id))
     points = cloud(measured)
     if points is not None:
-        places_m, colours = points
-        every = math.ceil(len(places_m) / MOST_POINTS) or 1
-        return panes.points(name, frame, places_m[::every], colours[::every])
+        return panes.points(name, frame, *points)
     return panes.lines(name, frame, readings(carla_map, measured))
 
 
@@ -55,12 +43,7 @@ def readings(carla_map: carla.Map, measured: Any) -> list[tuple[str, str]]:  # n
         latitude, longitude = degrees(fix, 7)
         return [("Latitude", latitude), ("Longitude", longitude), ("Altitude", f"{fix.altitude_m:.2f} m")]
     if isinstance(measured, carla.IMUMeasurement):
-        force, spin, heading_deg = measured.accelerometer, measured.gyroscope, math.degrees(measured.compass)
-        return [
-            *((f"Acceleration {axis}", f"{getattr(force, axis):+.2f} m/s²") for axis in "xyz"),
-            *((f"Turn rate {axis}", f"{math.degrees(getattr(spin, axis)):+.2f} °/s") for axis in "xyz"),
-            ("Compass", f"{heading_deg:.1f}° {compass_point(heading_deg)}"),
-        ]
+        return imu_lines(measured)
     if isinstance(measured, carla.CollisionEvent):
         impulse = measured.normal_impulse
         other = measured.other_actor
@@ -76,43 +59,18 @@ def readings(carla_map: carla.Map, measured: Any) -> list[tuple[str, str]]:  # n
 
 
 def picture(image: carla.Image, type_id: str) -> NDArray[np.uint8]:
-    """Return a camera's picture (H, W, 3) as red, green, blue, at most ``MOST_WIDE_PX`` wide.
-
-    Colours stay as they are, depth becomes logarithmic grey, and tags become colours.
-    """
-    every = math.ceil(image.width / MOST_WIDE_PX)
-    bgra = np.frombuffer(image.raw_data, dtype=np.uint8).reshape(image.height, image.width, 4)[::every, ::every]
-    if type_id.endswith("depth"):
-        parts = bgra.astype(np.float64)
-        depth_m = FAR_M * (parts[..., 2] + 256.0 * parts[..., 1] + 65536.0 * parts[..., 0]) / 0xFFFFFF
-        grey = 255.0 * np.log(np.maximum(depth_m, NEAR_M) / NEAR_M) / math.log(FAR_M / NEAR_M)
-        return np.repeat(grey.astype(np.uint8)[..., None], 3, axis=2)
-    if type_id.endswith("segmentation"):
-        return tag_colours(bgra[..., 2].reshape(-1)).reshape(*bgra.shape[:2], 3)
-    return np.ascontiguousarray(bgra[..., 2::-1])
-
-
-def tag_colours(tags: NDArray[np.integer[Any]]) -> NDArray[np.uint8]:
-    """Return a colour (N, 3) for each tag (N,): hues apart, tag 0 black."""
-    hue = (np.arange(256) * GOLDEN)[:, None] + np.array([0.0, 1.0 / 3.0, 2.0 / 3.0])
-    palette = (140.0 + 100.0 * np.cos(math.tau * hue)).astype(np.uint8)
-    palette[0] = 0
-    return np.asarray(palette[np.asarray(tags) & 255], dtype=np.uint8)
+    """Return a camera's picture (H, W, 3) as red, green, blue."""
+    return rgb_of(np.frombuffer(image.raw_data, dtype=np.uint8).reshape(image.height, image.width, 4), type_id)
 
 
 def cloud(measured: Any) -> tuple[NDArray[np.float64], NDArray[np.uint8]] | None:  # noqa: ANN401 - any of carla's
     """Return the points of a lidar or radar: (N, 2) m ahead and to the right, and (N, 3) colours; None for others."""
     if isinstance(measured, carla.LidarMeasurement):
-        rays = np.frombuffer(measured.raw_data, dtype="<f4").reshape(-1, 4)
-        level = (80.0 + 175.0 * np.clip(rays[:, 3], 0.0, 1.0)).astype(np.uint8)
-        return rays[:, :2].astype(np.float64), np.column_stack([level, level, level])
+        return lidar_points(np.frombuffer(measured.raw_data, dtype="<f4").reshape(-1, 4))
     if isinstance(measured, carla.SemanticLidarMeasurement):
         hits = np.frombuffer(measured.raw_data, dtype=SEMANTIC_RAY)
         return hits["xyz"][:, :2].astype(np.float64), tag_colours(hits["tag"])
     if isinstance(measured, carla.RadarMeasurement):
         echoes = np.frombuffer(measured.raw_data, dtype="<f4").reshape(-1, 4).astype(np.float64)
-        velocity_mps, azimuth, altitude, depth_m = echoes.T
-        flat_m = depth_m * np.cos(altitude)
-        colours = np.where(np.abs(velocity_mps)[:, None] > MOVING_MPS, np.array(YELLOW), np.array(WHITE))
-        return np.column_stack([flat_m * np.cos(azimuth), flat_m * np.sin(azimuth)]), colours.astype(np.uint8)
+        return radar_points(*echoes.T)
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 import select
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -12,11 +13,12 @@ from basu.metrics.incremental import SoFar
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring, scoring_of_run
 from basu.output.report.documents import CONFIG_FILE, REPORT_FILE
-from basu.records.history.files import lacks, read_history
+from basu.records.history.files import HISTORY_FILE, lacks, read_history
 from basu.records.recording_files import MAP_FILE
 from basu.settings.resolve import resolve
 from basu_window.browser.film import check_film, write_film
 from basu_window.browser.frames import (
+    RUN_COLOURS,
     actors_note,
     mark_of,
     moment_of,
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 8
 PANEL_EVERY_S = 1.0
+_STARTED = re.compile(r"^\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -51,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError("--at is a moment of the page; name the first moment of a film with --film-from")
     if len(folders) > MOST_RUNS:
         raise UserError(f"a page shows at most {MOST_RUNS} runs at once; name fewer than {len(folders)}")
-    histories = [read_history(folder) for folder in folders]
+    histories = [_read(folder) for folder in folders]
     towns = sorted({history.facts.route.town for history in histories})
     if len(towns) > 1:
         raise UserError(f"the runs are of different towns ({', '.join(towns)}); name runs of one town")
@@ -67,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
         _send(link, folders, histories, text)
         if arguments.film is not None:
             until_s = end_s if arguments.film_to is None else min(end_s, arguments.film_to)
-            write_film(link.address, arguments.film, arguments.film_from, until_s)
+            write_film(link, arguments.film, arguments.film_from, until_s)
             print(f"film              {arguments.film}")  # noqa: T201 - what a command says to its user
             return 0
         moment = "" if arguments.at is None else f"?t={arguments.at:g}"
@@ -81,6 +84,22 @@ def run(arguments: argparse.Namespace) -> int:
     finally:
         link.close()
     return 0
+
+
+def _read(folder: Path) -> History:
+    """Read the record of a run.
+
+    Raises:
+        UserError: there is none. If folders below hold records, as those of series and scenarios do, it names one.
+    """
+    below = (
+        []
+        if (folder / HISTORY_FILE).exists()
+        else sorted({each.resolve() for each in folder.glob(f"*/**/{HISTORY_FILE}")})
+    )
+    if below:
+        raise UserError(f"{folder} holds {len(below)} runs; name up to {MOST_RUNS} of them, such as {below[0].parent}")
+    return read_history(folder)
 
 
 def map_text(folder: Path, named: Path | None, town: str) -> str:
@@ -119,22 +138,27 @@ def _send(link: PageLink, folders: list[Path], histories: list[History], text: s
         notices += [notice] if notice else []
     link.note({"type": "actors", "actors": actors})
     link.note(route_note(first.facts.route, drives=False))
-    title = " beside ".join(folder.resolve().name for folder in folders)
-    facts = {"panels": panels_of(first, scorings[0], title), "marks": marks, "notice": " ".join(notices)}
+    facts = {"panels": panels_of(first, scorings[0], _name(folders[0])), "marks": marks, "notice": " ".join(notices)}
     link.blob("frames.bin", record_frames(histories))
     link.blob("facts.json", packed(facts))
-    links = {"frames": "record/frames.bin", "facts": "record/facts.json", "reports": _reports(link, folders)}
+    links = {"frames": "record/frames.bin", "facts": "record/facts.json", "runs": _runs(link, folders)}
     link.note({"type": "record", **links})
 
 
-def _reports(link: PageLink, folders: list[Path]) -> list[dict[str, str]]:
-    """Send the reports of the runs that have one, and return their names and paths for the page."""
+def _name(folder: Path) -> str:
+    """Return the name of a run's folder without the time of its start."""
+    return _STARTED.sub("", folder.resolve().name)
+
+
+def _runs(link: PageLink, folders: list[Path]) -> list[dict[str, Any]]:
+    """Send the reports of the runs that have one, and return name, colour and the report's path of each run."""
     found = []
-    for number, folder in enumerate(folders, 1):
+    for number, folder in enumerate(folders):
+        path = ""
         if (folder / REPORT_FILE).is_file():
-            link.blob(f"report-{number}.html", gzip.compress((folder / REPORT_FILE).read_bytes(), 6, mtime=0))
-            name = f"report of run {number}" if len(folders) > 1 else "report"
-            found.append({"name": name, "path": f"record/report-{number}.html"})
+            link.blob(f"report-{number + 1}.html", gzip.compress((folder / REPORT_FILE).read_bytes(), 6, mtime=0))
+            path = f"record/report-{number + 1}.html"
+        found.append({"name": _name(folder), "colour": RUN_COLOURS[number], "report": path})
     return found
 
 

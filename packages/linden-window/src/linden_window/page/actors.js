@@ -98,6 +98,11 @@ export class Actors {
     this.colour = new Color();
   }
 
+  /** Whether a model is on its way; it has no picture before. */
+  get isLoading() {
+    return [...this.models.values()].includes(null);
+  }
+
   /** @param {Actor[]} actors */
   describe(actors) {
     this.known = new Map(actors.map((actor) => [actor.id, actor]));

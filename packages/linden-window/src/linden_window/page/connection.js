@@ -7,17 +7,20 @@ import { Frame } from "./timeline.js";
 /** @typedef {Record<string, any> & {type: string}} Note */
 
 const AGAIN_MS = 2000;
+/** Codes with which the program refuses a page: policy violation, and try again later. */
+const REFUSED = [1008, 1013];
 
 export class Connection {
   /**
    * @param {(note: Note) => void} onNote @param {(frame: Frame) => void} onFrame
-   * @param {(pane: ArrayBuffer) => void} onPane @param {(sentence: string) => void} onLost
+   * @param {(pane: ArrayBuffer) => void} onPane @param {(sentence: string) => void} onLost @param {() => void} onOpen
    */
-  constructor(onNote, onFrame, onPane, onLost) {
+  constructor(onNote, onFrame, onPane, onLost, onOpen) {
     this.onNote = onNote;
     this.onFrame = onFrame;
     this.onPane = onPane;
     this.onLost = onLost;
+    this.onOpen = onOpen;
     this.bytes = 0;
     this.hasEnded = false;
     this.open();
@@ -40,10 +43,12 @@ export class Connection {
         else this.onFrame(new Frame(data));
       }
     };
-    socket.onclose = ({ reason }) => {
+    socket.onopen = () => this.onOpen();
+    socket.onclose = ({ code, reason }) => {
       if (this.hasEnded) return;
-      this.onLost(reason || "The connection to the program is lost. This page tries to connect again.");
-      if (!reason) setTimeout(() => this.open(), AGAIN_MS);
+      const isRefused = REFUSED.includes(code);
+      this.onLost(isRefused ? reason : "The connection to the program is lost. This page tries to connect again.");
+      if (!isRefused) setTimeout(() => this.open(), AGAIN_MS);
     };
     this.socket = socket;
   }

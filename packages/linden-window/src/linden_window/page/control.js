@@ -1,5 +1,5 @@
 // @ts-check
-/** Buttons that change a running world: pause, step, speed, weather, spawn; only if the program allows it. */
+/** Buttons that change a running world: pause, step, speed, weather, spawn, send; only if the program allows it. */
 
 import { element } from "./panel.js";
 
@@ -38,7 +38,20 @@ export function controlOf(send) {
     if (name) send({ order: "weather", values: WEATHERS[name] });
   });
   const spawned = select("Spawn with a click", [["", "spawn with a click …"], ...SPAWNS.map((type) => [type, type])], "", () => {});
-  const rows = [[pause, step, speed], [weather], [spawned]];
+  let wantsGoal = false;
+  /** @param {boolean} wants */
+  const waitForGoal = (wants) => {
+    wantsGoal = wants;
+    sent.setAttribute("aria-pressed", String(wants));
+    sent.textContent = wants ? "Click where it shall go" : "Send somewhere";
+  };
+  const sent = button("Send somewhere", () => waitForGoal(!wantsGoal));
+  const gone = button("Take away", () => {
+    send({ order: "destroy", id: chosen?.id });
+  });
+  const rows = [[pause, step, speed], [weather], [spawned], [sent, gone]];
+  /** @type {{id: number, x: number, y: number, yaw: number, isVehicle: boolean} | null} */
+  let chosen = null;
   section.replaceChildren(
     ...rows.map((parts) => {
       const row = document.createElement("div");
@@ -51,10 +64,26 @@ export function controlOf(send) {
     show(isAllowed) {
       section.hidden = !isAllowed;
     },
+    /** Note which actor the buttons are for. @param {typeof chosen} actor */
+    choose(actor) {
+      chosen = actor;
+      sent.disabled = gone.disabled = actor === null;
+      sent.title = gone.title = actor === null ? "Click a vehicle or a person first" : `actor ${actor.id}`;
+      if (actor === null && wantsGoal) waitForGoal(false);
+    },
+    get wantsGoal() {
+      return !section.hidden && wantsGoal && chosen !== null;
+    },
+    /** Send the chosen actor to a place. @param {number} x @param {number} y in m */
+    sendTo(x, y) {
+      if (chosen === null) return;
+      send({ order: "send", id: chosen.id, from: [chosen.x, chosen.y, chosen.yaw], to: [x, y], on_lanes: chosen.isVehicle });
+      waitForGoal(false);
+    },
     get wantsPlace() {
       return !section.hidden && spawned.value !== "";
     },
-    /** @param {number[]} place x, y, z in m @param {number} yaw in degrees */
+    /** @param {(number | null)[]} place x, y, z in m; z is null on the ground @param {number} yaw in degrees */
     spawn(place, yaw) {
       send({ order: "spawn", type: spawned.value, place, yaw });
     },

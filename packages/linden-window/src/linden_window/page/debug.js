@@ -89,8 +89,8 @@ function put(geometry, places, colours) {
   geometry.setDrawRange(0, places.length / 3);
 }
 
-/** @param {Shape} shape */
-function segmentsOf(shape) {
+/** Return the ends of a shape's lines in the axes of three.js. @param {Shape} shape */
+export function segmentsOf(shape) {
   if (shape.form === "box") return boxEdges(shape);
   const from = new Vector3(shape.from[0], shape.from[2], shape.from[1]);
   const to = new Vector3(shape.to[0], shape.to[2], shape.to[1]);

@@ -47,6 +47,12 @@ export class DrivingInput {
     this.tell();
   }
 
+  /** Send what is held now to a program that does not know it. */
+  again() {
+    this.last = "";
+    this.tell();
+  }
+
   /** Send what is held now, if it has changed; a stick or a pedal changes all the time. */
   tell() {
     if (!this.isOn) return;

@@ -10,7 +10,7 @@ import { DebugShapes } from "./debug.js";
 import { DrivingInput } from "./input.js";
 import { Map2d, colourOf, endsOf } from "./map2d.js";
 import { Panes } from "./panes.js";
-import { aboutActor, element, help, list, say, showReadings, showReports, showScore, unsay } from "./panel.js";
+import { aboutActor, element, help, list, say, showReadings, showRuns, showScore, unsay } from "./panel.js";
 import { Replay } from "./replay.js";
 import { Timeline } from "./timeline.js";
 import { World } from "./world.js";
@@ -19,6 +19,9 @@ import { World } from "./world.js";
 
 const NARROW_PX = 640;
 const FIGURES_MS = 200;
+const LOADS_MS = 50;
+/** How much of an actor's path is shown, s of simulated time. */
+const PATH_S = 60;
 const NO_WEBGL = "This browser has no WebGL, so the page shows a map. Turn on hardware acceleration, or use another browser.";
 const BUILDING = "The scenery of this map is being made, once on this machine; that takes some ten seconds.";
 
@@ -69,10 +72,15 @@ class Page {
     this.readings = null;
     /** @type {LineBasicMaterial[]} of the lines of signs and lights */
     this.lines = [];
+    this.path = new Line(new BufferGeometry(), new LineBasicMaterial({ color: 0xd0421b }));
+    this.path.frustumCulled = false;
+    this.world.scene.add(this.path);
     this.keepsPicture = false;
+    this.isFilmed = parameters.has("film");
     this.panes = new Panes((order) => this.connection.send(order));
     this.connection = new Connection(
       (note) => this.note(note), (frame) => this.arrived(frame), (pane) => this.panes.take(pane), (sentence) => say(sentence, true),
+      () => this.input.again(),
     );
     this.input = new DrivingInput((order) => this.connection.send(order));
     this.control = controlOf((order) => this.connection.send(order));
@@ -82,11 +90,11 @@ class Page {
     element("map").addEventListener("click", (event) => this.clickMap(event));
     addEventListener("keydown", (event) => this.key(event));
     addEventListener("keyup", (event) => this.cameras.keys.delete(event.code));
-    document.body.classList.toggle("film", parameters.has("film"));
+    document.body.classList.toggle("film", this.isFilmed);
     this.flat(this.isFlat);
     const view = parameters.get("view");
     if (view !== null && VIEWS.includes(view)) this.view(view);
-    setInterval(() => this.figures(), FIGURES_MS);
+    if (!this.isFilmed) setInterval(() => this.figures(), FIGURES_MS);
     requestAnimationFrame(() => this.draw());
   }
 
@@ -107,6 +115,7 @@ class Page {
       actors: () => {
         this.spectator = note.spectator ?? 0;
         this.actors.describe(note.actors);
+        this.panes.describeOf(note.actors);
       },
       weather: () => {
         this.world.setWeather(note.weather);
@@ -139,6 +148,7 @@ class Page {
   /** @param {any} note */
   beginScene(note) {
     this.world.begin(note);
+    this.panes.named = "";
     if (note.error) say(note.error, true);
     if (!note.ready && !note.kept) say(BUILDING, false, Infinity);
     if (note.ready) {
@@ -147,9 +157,11 @@ class Page {
       const [spawn] = note.spawn_points ?? [];
       if (!this.hasPlace && spawn) this.cameras.lookAt(new Vector3(spawn[0], spawn[2], spawn[1]));
     }
+    if (this.map.signals.length) this.showSignals(this.map.signals);
     this.mapName = note.map;
     document.title = `${note.map} – window`;
     this.control.show(note.control);
+    element("changes").hidden = !note.control;
   }
 
   /**
@@ -181,6 +193,7 @@ class Page {
   /** @param {number[]} states of the route's lights, -1 for signs */
   showSignals(states) {
     this.map.signals = states;
+    this.world.setSignals(new Map(this.map.controls.map(({ id }, index) => [id, states[index]])));
     this.lines.forEach((line, index) => line.color.set(colourOf(this.map.controls[index], states[index])));
   }
 
@@ -192,10 +205,10 @@ class Page {
     this.replay.showMarks(marks);
   }
 
-  /** @param {{frames: string, facts: string, reports: {name: string, path: string}[]}} note */
+  /** @param {{frames: string, facts: string, runs: import("./panel.js").RecordedRun[]}} note */
   async record(note) {
     if (this.replay.isOn) return;
-    showReports(note.reports);
+    showRuns(note.runs);
     const [frames, facts] = await Promise.all([fetch(note.frames), fetch(note.facts)]);
     this.timeline.read(await frames.arrayBuffer());
     const told = await facts.json();
@@ -229,7 +242,12 @@ class Page {
     keys.textContent = "?";
     keys.setAttribute("aria-label", "Keys");
     keys.onclick = () => help(this.input.isOn);
-    nav.append(flat, keys);
+    const changes = document.createElement("button");
+    changes.id = "changes";
+    changes.textContent = "Change";
+    changes.hidden = true;
+    changes.onclick = () => changes.setAttribute("aria-pressed", String(element("control").classList.toggle("open")));
+    nav.append(changes, flat, keys);
     this.view("orbit");
   }
 
@@ -286,6 +304,11 @@ class Page {
     const at = new Vector2((event.clientX / innerWidth) * 2 - 1, 1 - (event.clientY / innerHeight) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, camera);
+    if (this.control.wantsGoal) {
+      const [hit] = ray.intersectObject(this.world.tiles, true);
+      if (hit) this.control.sendTo(hit.point.x, hit.point.z);
+      return;
+    }
     let best = 0;
     let nearest = Infinity;
     for (const pose of this.poses) {
@@ -307,6 +330,8 @@ class Page {
   clickMap(event) {
     const x = this.map.centre[0] + (event.clientX - innerWidth / 2) * this.map.metresPerPixel;
     const y = this.map.centre[1] + (event.clientY - innerHeight / 2) * this.map.metresPerPixel;
+    if (this.control.wantsGoal) return this.control.sendTo(x, y);
+    if (this.control.wantsPlace) return this.control.spawn([x, y, null], 0);
     const reach = Math.max(3, 14 * this.map.metresPerPixel);
     const near = this.poses
       .filter((pose) => ["vehicle", "walker"].includes(this.actors.known.get(pose.id)?.kind ?? ""))
@@ -324,17 +349,40 @@ class Page {
   }
 
   draw() {
+    if (this.isFilmed) return;
     requestAnimationFrame(() => this.draw());
     const now = performance.now();
     const dt = Math.min(0.2, (now - this.before) / 1000);
     this.before = now;
+    this.picture(now, dt);
+  }
+
+  /**
+   * Draw one moment of a record for a film, with all that is seen in it. Nothing else is drawn, so the pictures depend
+   * on simulated time only. @param {number} t @param {number} dt since the last picture, in s
+   */
+  async show(t, dt) {
+    const isLoading = () => !this.isFlat && (this.world.waiting.length + this.world.loading > 0 || this.actors.isLoading);
+    this.replay.seek(t);
+    this.picture(performance.now(), dt);
+    if (isLoading()) {
+      while (isLoading()) await new Promise((done) => setTimeout(done, LOADS_MS));
+      this.picture(performance.now(), 0);
+    }
+    this.figures();
+    await new Promise((done) => requestAnimationFrame(done));
+  }
+
+  /** @param {number} now in ms @param {number} dt since the last picture, in s */
+  picture(now, dt) {
     const clock = this.replay.isOn ? this.replay.advance(dt) : now / 1000 - 1.6 * this.timeline.interval;
     const t = this.timeline.time(clock);
     this.poses = this.timeline.poses(clock);
     if (!this.chosen && ["chase", "driver"].includes(this.cameras.view)) this.next(1);
     const pose = this.followed();
     this.place(pose);
-    if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks);
+    this.debug.update(t);
+    if (this.isFlat) this.map.draw(this.poses, this.actors.known, pose, this.marks, this.debug.shapes);
     else this.draw3d(dt, t, pose);
     if (this.keepsPicture) this.keepPicture();
     const driven = this.replay.isOn ? undefined : this.poses.find((each) => each.id === this.ego);
@@ -361,9 +409,11 @@ class Page {
   /** Look at where something happens, once. @param {Pose | null} pose */
   place(pose) {
     if (this.hasPlace || !this.poses.length) return;
-    const seen = pose ?? this.poses.find((each) => this.actors.known.get(each.id)?.kind === "vehicle");
+    const vehicle = pose ?? this.poses.find((each) => this.actors.known.get(each.id)?.kind === "vehicle");
+    const seen = vehicle ?? this.poses.find((each) => each.id === this.spectator && (each.x || each.y));
     if (seen === undefined) return;
-    this.hasPlace = true;
+    this.hasPlace = vehicle !== undefined;
+    if (!this.hasPlace && !this.isFlat) return; // in three dimensions the view `spectator` shows what it sees
     this.cameras.lookAt(new Vector3(seen.x, seen.z, seen.y), 30);
     this.map.centre = [seen.x, seen.y];
   }
@@ -386,7 +436,6 @@ class Page {
     this.cameras.update(dt, pose, isWalker ? up * 0.85 : middle + up * 0.45, isWalker ? 0.2 : half * 0.25, spectator);
     this.world.load(this.cameras.focus);
     this.actors.update(this.poses, t, this.cameras.view === "driver" ? this.chosen : 0);
-    this.debug.update(t);
     this.world.update(this.cameras.focus, this.cameras.camera.position, t);
     renderer.render(this.world.scene, this.cameras.camera);
   }
@@ -406,7 +455,7 @@ class Page {
     const lines = [{ name: "time", value: `${this.timeline.time(clock).toFixed(1)} s` }];
     if (this.readings === null) lines.push({ name: "vehicles, walkers", value: `${count("vehicle")}, ${count("walker")}` });
     if (this.weather && this.readings === null) lines.push({ name: "weather", value: this.weather });
-    lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
+    if (!this.isFilmed) lines.push({ name: "pictures/s", value: this.perSecond.toFixed(0) });
     if (!this.replay.isOn) lines.push({ name: "data", value: `${(this.bytesPerSecond / 1000).toFixed(0)} kB/s` });
     list(element("figures"), lines);
     this.actorFigures();
@@ -419,14 +468,28 @@ class Page {
     const pose = this.followed();
     const actor = pose === null ? undefined : this.actors.known.get(pose.id);
     box.hidden = actor === undefined;
+    this.panes.carriedBy(this.chosen);
+    const isStreet = actor !== undefined && pose !== null && ["vehicle", "walker", "prop"].includes(actor.kind);
+    this.control.choose(isStreet ? { id: pose.id, x: pose.x, y: pose.y, yaw: pose.yaw, isVehicle: actor.kind === "vehicle" } : null);
+    this.showPath(pose);
     if (actor === undefined || pose === null) return;
     if (this.readings !== null && pose.id === this.ego && !this.replay.isOn) return showReadings(box, this.readings);
     box.className = "";
     const heading = document.createElement("h2");
     heading.textContent = actor.type;
     const lines = document.createElement("div");
-    list(lines, aboutActor(actor, pose));
+    const sensors = [...this.actors.known.values()].filter((each) => each.kind === "sensor" && each.parent === actor.id);
+    list(lines, aboutActor(actor, pose, sensors));
     box.replaceChildren(heading, lines);
+  }
+
+  /** Show the way that an actor has come, of the vehicle under test from the beginning. @param {Pose | null} pose */
+  showPath(pose) {
+    const points = pose === null || pose.id === this.ego ? [] : this.timeline.path(pose.id, PATH_S);
+    this.map.chosenPath = points;
+    this.path.geometry.dispose();
+    this.path.geometry = new BufferGeometry().setFromPoints(points.map(([x, y, z]) => new Vector3(x, z + 0.3, y)));
+    this.path.visible = points.length > 1;
   }
 
   /** @param {number} t */

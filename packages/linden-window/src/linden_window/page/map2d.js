@@ -1,6 +1,8 @@
 // @ts-check
 /** The map in two dimensions: edges of lanes, planned and driven path, actors; for telephones and browsers without WebGL. */
 
+import { segmentsOf } from "./debug.js";
+
 /** @typedef {import("./timeline.js").Pose} Pose */
 /** @typedef {import("./actors.js").Actor} Actor */
 
@@ -12,7 +14,7 @@ const SIGNS = /** @type {Record<string, string>} */ ({ stop_sign: "#c8102e", yie
 const LIGHTS = ["#d0021b", "#e8b400", "#1f9d45"];
 const UNKNOWN = "#8a9099";
 
-/** @typedef {{kind: string, x: number, y: number, z: number, yaw: number}} Control */
+/** @typedef {{kind: string, id: string, x: number, y: number, z: number, yaw: number}} Control */
 
 /** Return the colour of a line of the route. @param {Control} control @param {number | undefined} state of a light */
 export function colourOf(control, state) {
@@ -30,12 +32,14 @@ export class Map2d {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    /** @type {Path2D | null} */
+    /** @type {{low: number[], high: number[], path: Path2D}[] | null} by parts, so that only those in view are drawn */
     this.edges = null;
     /** @type {number[][]} */
     this.route = [];
     /** @type {number[][]} the way that the vehicle under test has driven */
     this.trail = [];
+    /** @type {number[][]} the way that the chosen actor has come */
+    this.chosenPath = [];
     /** @type {Control[]} */
     this.controls = [];
     /** @type {number[]} */
@@ -97,6 +101,7 @@ export class Map2d {
     const pixel = this.metresPerPixel;
     if (this.route.length) this.path(this.route, style.getPropertyValue("--planned"), Math.max(1.2, 4 * pixel));
     if (this.trail.length) this.path(this.trail, style.getPropertyValue("--driven"), Math.max(0.4, 2 * pixel));
+    if (this.chosenPath.length > 1) this.path(this.chosenPath, FOCUS, Math.max(0.3, 1.5 * pixel));
     this.controls.forEach((control, index) => {
       this.path(endsOf(control, this.half), colourOf(control, this.signals[index]), Math.max(0.5, 4 * pixel));
     });
@@ -121,19 +126,25 @@ export class Map2d {
     if (!answer.ok) return;
     /** @type {number[][]} */
     const lines = await answer.json();
-    const path = new Path2D();
-    for (const line of lines) {
-      path.moveTo(line[0], line[1]);
-      for (let at = 2; at < line.length; at += 2) path.lineTo(line[at], line[at + 1]);
-    }
-    this.edges = path;
+    this.edges = lines.map((line) => {
+      const path = new Path2D();
+      const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+      for (let at = 0; at < line.length; at += 2) {
+        path.lineTo(line[at], line[at + 1]);
+        for (const axis of [0, 1]) {
+          low[axis] = Math.min(low[axis], line[at + axis]);
+          high[axis] = Math.max(high[axis], line[at + axis]);
+        }
+      }
+      return { low, high, path };
+    });
   }
 
   /**
    * @param {Pose[]} poses @param {Map<number, Actor>} actors @param {Pose | null} focus
-   * @param {{x: number, y: number, text: string}[]} marks
+   * @param {{x: number, y: number, text: string}[]} marks @param {import("./debug.js").Shape[]} shapes
    */
-  draw(poses, actors, focus, marks) {
+  draw(poses, actors, focus, marks, shapes) {
     const { canvas, context } = this;
     const ratio = devicePixelRatio || 1;
     const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -151,14 +162,56 @@ export class Map2d {
     context.setTransform(scale, 0, 0, scale, canvas.width / 2 - this.centre[0] * scale, canvas.height / 2 - this.centre[1] * scale);
     context.lineWidth = 1.2 * this.metresPerPixel;
     context.strokeStyle = style.getPropertyValue("--soft");
-    if (this.edges !== null) context.stroke(this.edges);
+    const half = [(width / 2) * this.metresPerPixel, (height / 2) * this.metresPerPixel];
+    for (const { low, high, path } of this.edges ?? []) {
+      if ([0, 1].every((axis) => Math.abs(this.centre[axis] - Math.min(high[axis], Math.max(low[axis], this.centre[axis]))) < half[axis])) {
+        context.stroke(path);
+      }
+    }
     this.drawRoute(style);
+    this.drawShapes(shapes);
     for (const pose of poses) this.actor(pose, actors.get(pose.id), pose.id === focus?.id);
     for (const mark of marks) {
       context.fillStyle = style.getPropertyValue("--alarm");
       context.beginPath();
       context.arc(mark.x, mark.y, 5 * this.metresPerPixel, 0, 7);
       context.fill();
+    }
+  }
+
+  /** Draw what scripts draw with world.debug, from above. @param {import("./debug.js").Shape[]} shapes */
+  drawShapes(shapes) {
+    const { context } = this;
+    const pixel = this.metresPerPixel;
+    /** @type {Map<string, number>} texts at one place stand below each other */
+    const texts = new Map();
+    for (const shape of shapes) {
+      const colour = `rgb(${shape.colour.join(",")})`;
+      context.fillStyle = colour;
+      if (shape.form === "point") {
+        context.beginPath();
+        context.arc(shape.at[0], shape.at[1], 3 * pixel, 0, 7);
+        context.fill();
+      } else if (shape.form === "text") {
+        context.font = `bold ${12 * pixel}px sans-serif`;
+        context.lineWidth = 3 * pixel;
+        context.strokeStyle = "rgba(0, 0, 0, .75)";
+        const place = shape.at.slice(0, 2).map(Math.round).join();
+        const line = texts.get(place) ?? 0;
+        texts.set(place, line + 1);
+        context.strokeText(shape.text, shape.at[0], shape.at[1] + 13 * pixel * line);
+        context.fillText(shape.text, shape.at[0], shape.at[1] + 13 * pixel * line);
+      } else {
+        const ends = segmentsOf(shape);
+        context.strokeStyle = colour;
+        context.lineWidth = 2 * pixel;
+        context.beginPath();
+        for (let at = 0; at < ends.length; at += 6) {
+          context.moveTo(ends[at], ends[at + 2]);
+          context.lineTo(ends[at + 3], ends[at + 5]);
+        }
+        context.stroke();
+      }
     }
   }
 
@@ -173,7 +226,7 @@ export class Map2d {
     const least = 2.5 * this.metresPerPixel;
     const a = Math.max(actor.box[3], least), b = Math.max(actor.box[4], least);
     context.globalAlpha = pose.ghost ? 0.5 : 1;
-    context.fillStyle = isFocus ? FOCUS : colour;
+    context.fillStyle = isFocus ? FOCUS : pose.ghost ? `rgb(${actor.colour.join(",")})` : colour;
     context.beginPath();
     context.moveTo(actor.box[0] + a + 0.25 * b, 0);
     context.lineTo(actor.box[0] + a * 0.8, b);

@@ -4,6 +4,7 @@
 /** @typedef {import("./timeline.js").Pose} Pose */
 /** @typedef {import("./actors.js").Actor} Actor */
 /** @typedef {{name: string, value: string, bad?: boolean, bar?: number, turn?: number}} Line */
+/** @typedef {{name: string, colour: number[], report: string}} RecordedRun */
 /** @typedef {{groups: {name: string, lines: Line[]}[], impulses: number[], tally: string[]}} ReadingsNote */
 /** @typedef {{t: number, title: string, large?: string, lines: Line[], found: {text: string, bad?: boolean}[]}} ScorePanel */
 
@@ -103,8 +104,8 @@ export function help(drives) {
   dialog.showModal();
 }
 
-/** @param {Actor} actor @param {Pose} pose @returns {Line[]} */
-export function aboutActor(actor, pose) {
+/** @param {Actor} actor @param {Pose} pose @param {Actor[]} sensors on the actor @returns {Line[]} */
+export function aboutActor(actor, pose, sensors) {
   /** @type {Line[]} */
   const lines = [{ name: "id", value: String(actor.id) }];
   if (actor.role) lines.push({ name: "role", value: actor.role });
@@ -117,6 +118,7 @@ export function aboutActor(actor, pose) {
       { name: "steer", value: `${((pose.steer * 180) / Math.PI).toFixed(0)}°` },
     );
   }
+  if (sensors.length) lines.push({ name: "sensors", value: sensors.map((each) => each.type.replace(/^sensor\./, "")).join(", ") });
   lines.push({ name: "place, m", value: `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}, ${pose.z.toFixed(1)}` });
   return lines;
 }
@@ -167,16 +169,19 @@ function graphOf(impulses) {
   return canvas;
 }
 
-/** Show the links to the reports of recorded runs. @param {{name: string, path: string}[]} reports */
-export function showReports(reports) {
-  const links = reports.map(({ name, path }) => {
-    const link = document.createElement("a");
-    link.href = path;
-    link.textContent = name;
-    return link;
+/** Show the recorded runs with their colours and links to their reports. @param {RecordedRun[]} runs */
+export function showRuns(runs) {
+  const lines = runs.map(({ name, colour, report }) => {
+    const line = document.createElement("div");
+    const swatch = document.createElement("i");
+    swatch.style.background = `rgb(${colour.join(",")})`;
+    if (runs.length > 1) line.append(swatch, `${name} `);
+    const link = Object.assign(document.createElement("a"), { href: report, textContent: "report" });
+    if (report) line.append(link);
+    return line;
   });
-  element("reports").replaceChildren(...links);
-  element("reports").hidden = links.length === 0;
+  element("reports").replaceChildren(...lines);
+  element("reports").hidden = runs.length < 2 && !runs[0]?.report;
 }
 
 /** @param {ScorePanel} panel */
@@ -193,6 +198,7 @@ export function showScore(panel) {
     const large = document.createElement("div");
     large.className = "large";
     large.textContent = panel.large;
+    large.append(Object.assign(document.createElement("span"), { className: "soft", textContent: " driving score so far" }));
     section.append(large);
   }
   section.append(lines);

@@ -1,9 +1,9 @@
 // @ts-check
-/** Panes of the agent's sensors: pictures, points from above, readings. panes.py packs what arrives here. */
+/** Panes of sensors: pictures, points from above, readings. panes.py packs what arrives here. */
 
 import { element, list } from "./panel.js";
 
-/** @typedef {{name: string, type: string}} Sensor */
+/** @typedef {{name: string, type: string, parent?: number}} Sensor a parent carries it, 0 without one */
 /** @typedef {{kind: string, name: string, frame: number, width: number, height: number, count: number,
  *   lines: import("./panel.js").Line[]}} Head */
 
@@ -22,6 +22,29 @@ export class Panes {
     this.open = new Map();
     /** @type {Map<string, number>} how often each pane was drawn */
     this.drawn = new Map();
+    this.carrier = 0;
+    this.named = "";
+  }
+
+  /** Take the sensors among a world's actors. @param {import("./actors.js").Actor[]} actors */
+  describeOf(actors) {
+    const found = actors.filter((actor) => actor.kind === "sensor");
+    const names = found.map(({ id, type }) => `${type.split(".").pop()} ${id}`);
+    if (names.join() === this.named) return;
+    this.named = names.join();
+    this.describe(found.map(({ type, parent }, at) => ({ name: names[at], type, parent })));
+  }
+
+  /** Show buttons for the sensors of one actor. @param {number} id */
+  carriedBy(id) {
+    if (this.carrier === id) return;
+    this.carrier = id;
+    this.buttons();
+  }
+
+  /** Return the sensors that have buttons: the agent's, those of the chosen actor, those without a carrier, open ones. */
+  get offered() {
+    return this.sensors.filter(({ name, parent }) => !parent || parent === this.carrier || this.open.has(name));
   }
 
   /** @param {Sensor[]} sensors */
@@ -40,9 +63,9 @@ export class Panes {
 
   buttons() {
     const nav = element("sensors");
-    nav.hidden = !this.sensors.length;
+    nav.hidden = !this.offered.length;
     nav.replaceChildren(
-      ...this.sensors.map(({ name, type }) => {
+      ...this.offered.map(({ name, type }) => {
         const button = document.createElement("button");
         button.textContent = name;
         button.title = type;
@@ -55,7 +78,7 @@ export class Panes {
 
   /** Show the next sensor alone; after the last, none. */
   next() {
-    const names = this.sensors.map((sensor) => sensor.name);
+    const names = this.offered.map((sensor) => sensor.name);
     const at = names.findLastIndex((name) => this.open.has(name));
     for (const name of [...this.open.keys()]) this.close(name);
     if (at + 1 < names.length) this.show(names[at + 1]);

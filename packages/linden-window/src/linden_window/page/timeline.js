@@ -125,6 +125,21 @@ export class Timeline {
     return a.t + ((b.t - a.t) * (clock - a.clock)) / (b.clock - a.clock);
   }
 
+  /** Return where an actor was, oldest first, at most one place a metre. @param {number} id @param {number} lasts in s */
+  path(id, lasts) {
+    /** @type {number[][]} */
+    const places = [];
+    for (let at = this.frames.length - 1; at >= 0; at--) {
+      const frame = this.frames[at];
+      const row = frame.row(id);
+      if (row < 0 || this.frames[this.frames.length - 1].t - frame.t > lasts) break;
+      const place = [...frame.f32.subarray(row * 8 + 1, row * 8 + 4)];
+      const last = places[places.length - 1];
+      if (last === undefined || Math.hypot(place[0] - last[0], place[1] - last[1]) >= 1) places.push(place);
+    }
+    return places.reverse();
+  }
+
   /** Return the poses of all actors at a clock; they are valid until the next call. @param {number} clock */
   poses(clock) {
     const at = Math.max(0, this.index(clock));

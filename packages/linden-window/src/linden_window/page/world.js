@@ -10,7 +10,7 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 /** @typedef {{name: string, low: number[], high: number[]}} TileBox */
 /**
  * @typedef {{map: string, number: number, ready: boolean, kept: boolean, control: boolean, tiles?: TileBox[], error?: string,
- *   triangles?: number, spawn_points?: number[][], lights?: number[][], lamps?: number[][]}} SceneNote
+ *   triangles?: number, spawn_points?: number[][], signals?: string[], lights?: number[][], lamps?: number[][]}} SceneNote
  */
 
 const AT_ONCE = 4;
@@ -55,6 +55,8 @@ export class World {
     this.waiting = [];
     this.loading = 0;
     this.loaded = 0;
+    /** Tiles of the scene, -1 before they are known. */
+    this.total = -1;
     this.number = -1;
     this.isNight = false;
     this.precipitation = 0;
@@ -62,6 +64,8 @@ export class World {
     this.lightStates = [];
     /** @type {number[][]} */
     this.lampStates = [];
+    /** @type {Map<string, number>} by the id of a signal in OpenDRIVE */
+    this.lightOfSignal = new Map();
     /** @type {Map<number, number>} */
     this.lightOfBox = new Map();
     /** @type {Map<number, number>} */
@@ -88,9 +92,11 @@ export class World {
       this.lampPlaces = [];
       this.loaded = 0;
       this.waiting = [];
+      this.total = -1;
       this.number = note.number;
     }
     if (!note.ready || this.waiting.length || this.loaded) return;
+    this.lightOfSignal = new Map((note.signals ?? []).map((id, light) => [id, light]));
     this.lightOfBox = new Map(/** @type {[number, number][]} */ (note.lights ?? []));
     this.lampOfBox = new Map(/** @type {[number, number][]} */ (note.lamps ?? []));
     this.waiting = [...(note.tiles ?? [])];
@@ -185,6 +191,14 @@ export class World {
   setLights(states) {
     this.lightStates = states;
     this.switched.forEach((kept) => this.switchLamps(kept));
+  }
+
+  /** Let some traffic lights shine. @param {Map<string, number>} states of signals, by their ids in OpenDRIVE */
+  setSignals(states) {
+    /** @type {number[]} */
+    const lights = [];
+    for (const [id, light] of this.lightOfSignal) if (states.has(id)) lights[light] = states.get(id) ?? -1;
+    this.setLights(lights);
   }
 
   /** @param {number[][]} states of street lamps: on, red, green, blue */
