@@ -58,7 +58,7 @@ RAINY_NIGHT = carla.WeatherParameters(
     cloudiness=100.0, precipitation=80.0, precipitation_deposits=90.0, wetness=100.0, sun_altitude_angle=-40.0
 )
 LINDEN = (sys.executable, "-m", "linden.cli")
-BASU = (sys.executable, "-c", "import sys; from basu.cli import main; sys.exit(main())")
+BASU = (sys.executable, "-c", "from basu.cli import entry_point; entry_point()")
 
 
 @contextmanager
