@@ -102,7 +102,7 @@ def test_lights_are_set_at_the_beginning(exported: Export) -> None:
         ("control_loss_2", "a disturbance of the ego's controls"),
         ("slippery_stop_1", "friction of a part of the road"),
         ("dooring_1", "an open door"),
-        ("leaving_stop_1", "the trigger Past"),
+        ("leaving_stop_1", "the trigger PassesEgo"),
     ],
 )
 def test_what_cannot_be_expressed_is_refused_by_name(exported: Export, name: str, why: str) -> None:

@@ -63,6 +63,19 @@ def values_of(field: Field) -> st.SearchStrategy[Any]:
     return found | st.none() if type(None) in kinds else found
 
 
+def refused_by_a_rival(model: type[Settings], given: dict[str, Any]) -> list[str]:
+    """The options that do not go together with an option before them."""
+    rivals: set[str] = set()
+    found = []
+    for field in fields_of(model):
+        rival = field.option.rival
+        if rival is not None and given[field.name] != field.default:
+            if rival in rivals:
+                found.append(field.name)
+            rivals.add(rival)
+    return found
+
+
 def refused_by_sumo(given: dict[str, Any]) -> tuple[str, ...]:
     """The options that do not go together with what SUMO is to do."""
     demand = ("sumo_hour", "sumo_scale")
@@ -76,12 +89,8 @@ def refused_by_sumo(given: dict[str, Any]) -> tuple[str, ...]:
 def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     """A model with random values that do not contradict each other."""
     given = {field.name: draw(values_of(field)) for field in fields_of(model)}
-    rivals: set[str | None] = set()
-    for field in fields_of(model):
-        if field.option.rival is not None and given[field.name] != field.default:
-            if field.option.rival in rivals:
-                del given[field.name]
-            rivals.add(field.option.rival)
+    for name in refused_by_a_rival(model, given):
+        del given[name]
     if given.get("series") is None:
         given.pop("resume", None)
     if given.get("host") is not None:
@@ -95,6 +104,8 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("shuttles", None)
     for name in refused_by_sumo(given):
         given.pop(name, None)
+    if given.get("open") or given.get("track") not in (None, "sensors"):
+        given.pop("leaderboard_track", None)  # allows an agent its sensors alone
     if given.get("in_process"):
         given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
         given.pop("agent_writes", None)  # nor anything that it may not write

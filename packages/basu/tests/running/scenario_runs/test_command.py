@@ -287,7 +287,7 @@ def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
         (["goes_well", "--set", "ahed=3"], "did you mean 'ahead'?"),
         (["goes_well", "--workers", "0"], "--workers is 0"),
         (["goes_well", "--sweep", "0"], "a sweep of 0 is none"),
-        (["--where", "lighting=dark", "--where", "surface=slippery"], "cases has lighting=dark and surface=slippery"),
+        (["--where", "lighting=dark", "--where", "partner=animal"], "cases has lighting=dark and partner=animal"),
     ],
 )
 def test_what_was_typed_wrongly_is_reported_before_anything_starts(

@@ -122,6 +122,7 @@ EVERY: list[Criterion] = [
     criteria.Regains(after="trigger"),
     criteria.StoppedFor("child"),
     criteria.StoppedFor("the line", s_m=9.0),
+    criteria.YieldsToEmergencyVehicle("car"),
 ]
 
 
