@@ -89,7 +89,12 @@ def rclpy_python() -> Path:
 
 
 def ended(process: "subprocess.Popen[str]") -> None:
-    """End a node so that it takes its shared memory with it; kill one that does not end."""
+    """End a node so that it takes its shared memory with it; kill one that does not end.
+
+    A node that reads its standard input ends at the end of that input. SIGINT does not interrupt its reading.
+    """
+    if process.stdin is not None:
+        process.stdin.close()
     process.send_signal(signal.SIGINT)
     try:
         process.wait(ENDS_S)

@@ -43,8 +43,8 @@ def demand(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def drive(output: Path, demand: Path) -> Path:
     """Drive a service and return its folder.
 
-    It has a server of its own, because SUMO's files name actors by their ids. It has a process of its own, because libsumo
-    keeps the vehicles of the first simulation that have a device for safety measures.
+    It has a server of its own, because SUMO's files name actors by their ids. It has a process of its own, because
+    libsumo keeps the vehicles of its first simulation that have a device for safety measures.
     """
     words = ["service", "run", "basic", "--minutes", str(MINUTES), "--demand", str(demand), "--no-holding"]
     words += ["--sumo", "demand", "--sumo-scale", "3", "--sumo-output", "--seed", "4", "--step-limit", "120"]
