@@ -187,16 +187,14 @@ def _hurt(met: Sequence[_Met], curves: Curves) -> Draws:
 
 
 def _falls(met: Sequence[_Met], chance: _Chance) -> Interval:
-    """Return the falls of one standing passenger for a million miles."""
-    medians, spreads = np.array([np.sqrt(np.prod(FREE_MPS2))]), np.array([np.mean(SPREAD)])
-    value = 0.0
+    """Return the falls of one standing passenger for a million miles: median, and interval of the draws."""
     draws: Draws = np.zeros(DRAWS)
     for each in met:
         for case in each.cases:
-            value += each.conflicts / len(each.cases) * float(share_that_falls(case.braking_mps2, medians, spreads)[0])
             fallen = share_that_falls(case.braking_mps2, chance.medians_mps2, chance.spreads)
             draws = draws + each.drawn / len(each.cases) * fallen
-    return Interval(value, *(float(end) for end in np.quantile(draws, [0.025, 0.975])))
+    low, value, high = (float(end) for end in np.quantile(draws, [0.025, 0.5, 0.975]))
+    return Interval(value, low, high)
 
 
 def _ends(cases: Sequence[PlayedCase]) -> dict[str, int]:

@@ -45,5 +45,5 @@ def test_a_runs_folder_gets_json_and_a_page_and_the_groups_without_a_case_are_na
     assert "their risk is not in it" in text
 
 
-def test_figures_have_three_digits_and_next_to_nothing_is_0() -> None:
-    assert (figure(128.4), figure(0.01234), figure(1e-9)) == ("128", "0.0123", "0")
+def test_figures_have_three_digits_and_small_ones_are_below_a_limit() -> None:
+    assert (figure(128.4), figure(0.01234), figure(1e-9), figure(0.0)) == ("128", "0.0123", "below 0.001", "0")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PAGE_FILE, RISK_FILE = "risk.html", "risk.json"
-LEAST = 1e-6  # for a million miles: less is shown as 0
+LEAST = 0.001  # for a million miles: a smaller figure is shown as below this
 ASSUMPTIONS = (
     "A case is a conflict in which a driver has to react, and the cases stand for all conflicts of their group.",
     f"{CONFLICTS} conflicts stand behind {REPORTED} crashes that the police know of (100-Car study), in each group.",
@@ -91,7 +91,7 @@ def _figures(each: Risk, kind: str) -> str:
 def figure(value: float) -> str:
     """Return a number with three digits."""
     if value < LEAST:
-        return "0"
+        return f"below {LEAST:g}" if value > 0.0 else "0"
     return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
