@@ -54,14 +54,14 @@ def test_a_mark_can_be_reached_and_opened_by_keyboard(page: Page) -> None:
         if page.evaluate("document.activeElement.hash") == "#infraction-3":
             break
     page.keyboard.press("Enter")
-    assert page.locator("#infraction-3 dl").is_visible()
-    assert page.evaluate("document.activeElement.tagName") == "SUMMARY"
+    page.locator("#infraction-3 dl").wait_for()  # the page opens it when it learns of the new fragment
+    page.wait_for_function("document.activeElement.tagName === 'SUMMARY'")
 
 
 def test_a_link_from_outside_opens_the_evidence(context: BrowserContext, file: Path) -> None:
     page = context.new_page()
     page.goto(f"{file.as_uri()}#infraction-2")
-    assert page.locator("#infraction-2 dl").is_visible()
+    page.locator("#infraction-2 dl").wait_for()
     assert not page.locator("#infraction-1 dl").is_visible()
 
 
