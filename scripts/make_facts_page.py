@@ -102,7 +102,7 @@ def counts(document: dict[str, Any], fact: Fact) -> Counter[str]:
 
 
 def page(document: dict[str, Any]) -> str:
-    """Return the page."""
+    """Return the page of the facts' origins as Markdown."""
     lines = ["| fact | number | measured | read | estimated | no origin |", "|---|---|---|---|---|---|"]
     everything: Counter[str] = Counter()
     for fact in FACTS_OF_MAP:

@@ -46,7 +46,7 @@ def recorded(port: int) -> int:
 
 
 def main() -> int:
-    """Start server and example."""
+    """Start the server and CARLA's example; return 1 if the example fails or a video is missing."""
     client, python, out = Path(sys.argv[1]).resolve(), sys.argv[2], Path(sys.argv[3]).resolve()
     out.mkdir(parents=True)
     names = ("rgb", "depth", "semantic_segmentation", "instance_segmentation")

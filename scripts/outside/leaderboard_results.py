@@ -62,7 +62,7 @@ def differences(ours: Any, theirs: Any, where: str = "") -> list[str]:  # noqa: 
 
 
 def main() -> int:
-    """Judge each file."""
+    """Compare each result file with the public statistics manager; return 1 if a value differs."""
     leaderboard, scenario_runner, *files = sys.argv[1:]
     sys.path[:0] = [leaderboard, scenario_runner]
     sys.modules["dictor"] = types.SimpleNamespace(dictor=looked_up)  # type: ignore[assignment]

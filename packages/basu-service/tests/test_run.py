@@ -207,7 +207,7 @@ def test_persons_that_wait_are_walkers_beside_the_stop_until_they_board(services
     ends_s = [STEP_S * float(rows[-1]["tick"]) for rows in walkers.values()]
     gone_s = [end_s for end_s in ends_s if end_s < document["lasts_s"] - 1.0]
     assert len(gone_s) >= 2
-    for end_s in gone_s:  # each look at who waits is half a second after the one before
+    for end_s in gone_s:  # the queue is read every half second
         assert min(abs(end_s - each) for each in boarded_s) < 0.7
 
 

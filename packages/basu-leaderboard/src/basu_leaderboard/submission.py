@@ -140,7 +140,7 @@ def _track_of(runs: Sequence[SubmittedRun]) -> Mapping[str, Any]:
 
 
 def _record(index: int, run: SubmittedRun, version: SubmissionVersion) -> dict[str, Any]:
-    """One entry of ``records``."""
+    """Return the entry of ``records`` for one run."""
     result, scores = run.result, (run.result.metrics.get("leaderboard") or {}).get(version)
     infractions: dict[str, list[str]] = {kind.value: [] for kind in RECORDED}
     for event in () if scores is None else scores["events"]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu_search.report_section import search_section
-from basu_search.search_states import SearchStates, proposer_of
+from basu_search.search_states import SearchFiles, proposer_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,9 +22,9 @@ def sizes(part: SearchPart) -> tuple[int, ...]:
     return tuple(proposer_of(part, 0).sizes)
 
 
-def states(plan: CampaignPlan, folder: Path) -> SearchStates:
+def states(plan: CampaignPlan, folder: Path) -> SearchFiles:
     """Return the states of all searches of a campaign, which lie in its folder."""
-    return SearchStates(plan, folder)
+    return SearchFiles(plan, folder)
 
 
 def section(folder: Path, table: pa.Table, confidence: float) -> Markup:

@@ -1,4 +1,4 @@
-"""`SearchStates`: all searches of a campaign; each has a file of its rounds, so that a resumed campaign repeats them.
+"""`SearchFiles`: all searches of a campaign; each has a file of its rounds, so that a resumed campaign repeats them.
 
 A strand is one search: a case with a weather and a seed, for one agent. A file for each strand below ``search`` holds
 its rounds. A resumed campaign reads them, so it drives what it would have driven.
@@ -105,7 +105,7 @@ class SearchState:
         write_json(self.path, {**self._head, "rounds": rounds})
 
 
-class SearchStates:
+class SearchFiles:
     """All searches of a campaign."""
 
     def __init__(self, plan: CampaignPlan, folder: Path) -> None:

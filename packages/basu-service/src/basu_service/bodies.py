@@ -80,7 +80,7 @@ class Bodies(BaseManager):
         self.most = max(self.most, len(self._shown))
 
     def close(self) -> None:
-        """Take all bodies away."""
+        """Destroy the walkers that stand for waiting persons."""
         if self._run is not None:
             commands = [carla.command.DestroyActor(actor.id) for _, actor in self._shown.values()]
             self._shown = {}

@@ -35,7 +35,7 @@ class DatasetBatch(Batch):
     """The first ``drives`` jobs of a campaign, each with a folder of shards."""
 
     def __init__(self, folder: Path, plan: CampaignPlan, drives: int) -> None:
-        """List the drives."""
+        """Take the first ``drives`` jobs of the plan and name a folder for each."""
         self._jobs = [plan.job(number) for number in range(drives)]
         names = [
             f"{number:06d}-{plain(job['agent_name'])}-{plain(job['subject'])}" for number, job in enumerate(self._jobs)

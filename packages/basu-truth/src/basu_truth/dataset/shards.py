@@ -81,7 +81,7 @@ class ShardWriter:
         self._samples += 1
 
     def finish(self, truth: Truth) -> None:  # noqa: ARG002 - each sample has its part of the truth
-        """Close the last shard."""
+        """Close the last shard of the drive, which may have fewer samples than the others."""
         self._close()
 
     def _add(self, name: str, content: bytes) -> None:

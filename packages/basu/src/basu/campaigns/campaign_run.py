@@ -58,7 +58,7 @@ class CampaignRun(Batch):
         self.limit = plan.size if settings.drives is None else min(plan.size, settings.drives)
         names = [agent.name for agent in plan.agents]
         self._records = Records(folder, plan.campaign.keep)
-        self._strands = _strands(plan, folder)
+        self._search_states = _search_states(plan, folder)
         self._looks = Looks(plan.campaign.until, names, plan.campaign.confidence, table.rows)
         self._failures = dict.fromkeys(names, 0)
         self._began_s, self._written_s = time.monotonic(), 0.0
@@ -112,8 +112,8 @@ class CampaignRun(Batch):
             self._looks.complete(block)
 
     def _count(self, row: dict[str, Any]) -> None:
-        if self._strands is not None:
-            self._strands.count(row)
+        if self._search_states is not None:
+            self._search_states.count(row)
         if row["success"] is False:
             self._failures[row["agent"]] += 1
 
@@ -128,7 +128,7 @@ class CampaignRun(Batch):
 
     def _values(self, number: int) -> dict[str, float] | None:
         """What a job's search has chosen; None while it has not."""
-        return {} if self._strands is None else self._strands.values(number)
+        return {} if self._search_states is None else self._search_states.values(number)
 
     def publish(self, done: DriveDone) -> DriveDone:
         """Write the row of a drive, and its folder before that; return it.
@@ -197,7 +197,7 @@ class CampaignRun(Batch):
         return f"{done} drives\n{folder}\nreport            basu campaign report {where}"
 
 
-def _strands(plan: CampaignPlan, folder: Path) -> SearchStates | None:
+def _search_states(plan: CampaignPlan, folder: Path) -> SearchStates | None:
     """The searches of a campaign; None where it has none, so that it needs no plugin."""
     if all(part.search is None for part in plan.parts):
         return None

@@ -20,7 +20,7 @@ BRAKE = carla.VehicleControl(brake=1.0)
 
 
 class Pavement(BlindAgent):
-    """Looks at nobody, and drives round every hazard along the pavement."""
+    """Ignores all actors and drives past every hazard along the pavement."""
 
     @property
     def seen_route(self):
@@ -33,7 +33,7 @@ class Pavement(BlindAgent):
 
 
 class Remembers(BlindAgent):
-    """Looks at nobody, and stops where and when the public case needs it."""
+    """Ignores all actors and stops at the place and time that the public case needs."""
 
     stood = 0
 
@@ -49,7 +49,7 @@ class Remembers(BlindAgent):
 
 
 class Waits(BlindAgent):
-    """Stands whenever somebody is near, for half a minute in all, and hopes that the conflict goes away."""
+    """Stands while an actor is near, for half a minute in all, so that the conflict does not come about."""
 
     stood = 0
 
@@ -76,7 +76,7 @@ def answers(simulator: RunningServer, folder: Path, driver: str, *cases: str) ->
 
 
 def test_a_driver_that_evades_along_the_pavement_meets_nothing(simulator: RunningServer, tmp_path: Path) -> None:
-    """It touches nobody and comes to its goal; it has left its route, so its drive is not completed."""
+    """The driver touches no actor and reaches its goal. It has left its route, so its drive is not completed."""
     found = answers(simulator, tmp_path, "Pavement", "dog_on_the_road_1")["dog_on_the_road_1"]
     assert found.answer is not Answer.HELD
     assert "left its route" in found.sentence

@@ -63,7 +63,7 @@ def met(scenario: Scenario, driver: Driver) -> Met:
 
 
 def _partners(played: Rehearsal, named: Collection[str] | None) -> dict[str, NDArray[np.float64]]:
-    """The named actors; else those that move, or all if none does."""
+    """Return the named actors. Without a name, return the moving actors, or all actors if none moves."""
     others = {name: trail for name, trail in played.trails.items() if name != EGO}
     if named is not None:
         return {name: trail for name, trail in others.items() if name in named}

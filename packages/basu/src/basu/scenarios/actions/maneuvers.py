@@ -190,13 +190,13 @@ class BackUp(Action):
         self.actor, self.way_m, self.speed_mps = actor, way_m, speed_mps
 
     def begin(self) -> None:
-        """Note where it stands."""
+        """Store the pose from which the vehicle backs up."""
         body = self.stage.body(self.actor)
         self.x_m, self.y_m, self.yaw_rad = body.x_m, body.y_m, body.yaw_rad
         self.touched = False
 
     def act(self) -> str | None:
-        """One frame backwards."""
+        """Move the vehicle back for one frame; return why the action ends, or None while it goes on."""
         if self.actor in self.stage.ego_contacts:
             self.touched = True
             return "touched by the ego"

@@ -34,7 +34,7 @@ class Strokes(NamedTuple):
 
     @classmethod
     def none(cls) -> "Strokes":
-        """Return no strokes."""
+        """Return a set of strokes that is empty."""
         return cls(
             np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty((0, 3), np.uint8),
             np.empty((0, 3, 3)), np.empty((0, 3), np.uint8),

@@ -109,7 +109,7 @@ class YieldToEmergencyVehicle(Scenario):
         return Finding(away_m <= NEAR_M, f"the {ROLE} was {away_m:.1f} m away at least, and {NEAR_M:g} m count")
 
     def partners(self) -> Collection[str]:
-        """The emergency vehicle."""
+        """Return the role of the emergency vehicle."""
         return (ROLE,)
 
     def criteria(self) -> Sequence[Criterion]:
