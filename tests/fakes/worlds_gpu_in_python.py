@@ -7,6 +7,7 @@ of its own, with NUMBA_ENABLE_CUDASIM=1 and NUMBA_DISABLE_JIT=1: both count for 
 import sys
 
 import numpy as np
+from numba.cuda.simulator import kernelapi
 
 from linden.blueprints.library import packaged
 from linden.maps.ground import Ground
@@ -19,6 +20,9 @@ from linden.worlds_gpu import GpuWorlds
 
 WORLDS, STEPS, DT_S, SUBSTEPS = 3, 6, 0.05, 2
 WALL = (-1.0, 0.0, 0.5)
+kernelapi.FakeCUDALocal.array = lambda _, shape, dtype: np.empty(shape, dtype).view(np.recarray)
+"""Local memory: a view of it as records has their fields as attributes, as it has on a GPU."""
+
 CAR = packaged().find("vehicle.tesla.model3")
 
 

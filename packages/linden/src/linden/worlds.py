@@ -335,6 +335,7 @@ class Worlds:
         slot: int | None = 0,
         worlds: Chosen = None,
         start_deg: float = 0.0,
+        on_device: bool = False,
         **attributes: Value,
     ) -> LidarScans:
         """Return what a lidar measures in each of ``worlds`` (K,): the sweep of one step, from ``start_deg`` on.
@@ -343,15 +344,17 @@ class Worlds:
         counts from the world's origin.
         ``attributes`` are those of CARLA's ``sensor.lidar.ray_cast``. Their defaults are CARLA's but for
         ``rotation_frequency``, with which a step is a whole turn. The noise changes in each step; its seed is
-        ``noise_seed`` and the number of the world together.
+        ``noise_seed`` and the number of the world together. With ``on_device`` the arrays stay on the GPU, and PyTorch,
+        JAX and CuPy take them without a copy. No point may then depend on chance.
 
         Raises:
             UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
         """
         if isinstance(start_deg, bool) or not isinstance(start_deg, (int, float)) or not 0.0 <= start_deg < 360.0:
             raise UserError(f"start_deg is an angle from 0 to below 360, not {_short(start_deg)}")
+        self._refuse_without_gpu(on_device)
         asked = self._asked(transform, slot, worlds, lit=False)
-        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), asked)
+        return self._sensors.lidar(attributes, float(start_deg), clock_s(self.dt_s), asked, on_device=on_device)
 
     def pictures(
         self,
@@ -362,14 +365,15 @@ class Worlds:
         fov: float = 90.0,
         slot: int | None = 0,
         worlds: Chosen = None,
+        on_device: bool = False,
         **attributes: Value,
-    ) -> NDArray[np.float32] | NDArray[np.uint8]:
+    ) -> Any:  # noqa: ANN401 - an array of numpy's, or of Warp's on the device
         """Return what a camera shows in each of ``worlds`` (K,).
 
         Depth is (K, H, W) in m. Semantic pictures are (K, H, W) tags of CARLA. Pictures of ``kind`` "rgb" are
         (K, H, W, 3) bytes. Their ``size`` is width and height in pixels. The horizontal angle ``fov`` is in degrees.
-        The arguments ``transform`` and ``slot`` are as for :meth:`lidar`. ``attributes`` are those of CARLA's camera of
-        that kind.
+        The arguments ``transform``, ``slot`` and ``on_device`` are as for :meth:`lidar`; pictures of kind "rgb" cannot
+        stay on the device. ``attributes`` are those of CARLA's camera of that kind.
 
         Raises:
             UserError: the arguments cannot be used, or a world is not valid; no world changes in any case.
@@ -380,9 +384,15 @@ class Worlds:
             raise UserError(f"size is the width and the height of the pictures, not {_short(size)}") from None
         for name, side in (("the width", width), ("the height", height)):
             _whole(name, side, 1, LARGEST_SIDE_PX)
+        self._refuse_without_gpu(on_device)
         asked = self._asked(transform, slot, worlds, lit=kind == "rgb")
         given = {"image_size_x": width, "image_size_y": height, "fov": fov} | attributes
-        return self._sensors.pictures(kind, given, asked)
+        return self._sensors.pictures(kind, given, asked, on_device=on_device)
+
+    def _refuse_without_gpu(self, on_device: bool) -> None:  # noqa: FBT001 - the user's argument
+        """Raise UserError where arrays are to stay on a device and there is none."""
+        if on_device and self._gpu is None:
+            raise UserError("on_device=True needs worlds on a GPU; make them with device='cuda'")
 
     def _asked(self, transform: ArrayLike, slot: int | None, worlds: Chosen, *, lit: bool) -> Asked:
         """Return which worlds are to be measured, and where the sensors are.

@@ -4,7 +4,8 @@ Needs the extra ``gpu`` (numba-cuda). Nothing is copied from the device before i
 """
 
 import math
-from typing import Any, TypeAlias
+from functools import cache
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import cuda as numba_cuda
@@ -17,7 +18,7 @@ from linden.physics.columns import BodyTable
 from linden.physics.contact.impulses import ACCOUNT
 from linden.physics.contact.pairs import pairs_of_few, write_circles
 from linden.physics.contact.statics import Statics
-from linden.physics.state import BODY, VEHICLE_WORK
+from linden.physics.state import BODY, SOURCES, VEHICLE_WORK
 from linden.physics.step import GRAVITY_MPS2, begin_frame, run_frame
 from linden.physics.vehicle.controls import set_controls
 from linden.structured import StructuredArray
@@ -34,7 +35,31 @@ THREADS = 64
 _PAIRS_A_WORLD, _PAIRS_A_BODY = 16, 8
 """Room for pairs; a world with more becomes invalid."""
 
-_WORDS = BODY.itemsize // 8
+_WORDS, _WORK_WORDS = BODY.itemsize // 8, VEHICLE_WORK.itemsize // 8
+
+_MOST_LOCAL = 2
+"""Bodies of a world that are copied into the local memory of its thread; there is a kernel for each number."""
+
+
+class Tables(NamedTuple):
+    """What a step reads, of all worlds: arrays on the device."""
+
+    spec_of: OnDevice
+    specs: OnDevice
+    counts: OnDevice
+    ground: Ground
+    statics: Statics
+
+
+class Findings(NamedTuple):
+    """What a step writes besides the states, world by world."""
+
+    valid: OnDevice
+    frames: OnDevice
+    circles: OnDevice  # (W, S, 3)
+    pairs: OnDevice  # (W, P, 2)
+    near: OnDevice  # (W,) how many pairs there are
+    account: OnDevice  # (W, P, ACCOUNT)
 
 
 class DeviceColumn:
@@ -46,47 +71,82 @@ class DeviceColumn:
         self._owner = owner
 
 
-@cuda.jit  # type: ignore[untyped-decorator] # numba has no hints for it
-def _step(
-    state: OnDevice,
-    spec_of: OnDevice,
-    specs: OnDevice,
+@cuda.jit(device=True)  # type: ignore[untyped-decorator] # numba has no hints for it
+def _advance(
+    rows: OnDevice,
     work: OnDevice,
-    counts: OnDevice,
-    valid: OnDevice,
-    frames: OnDevice,
-    circles: OnDevice,
-    pairs: OnDevice,
-    found: OnDevice,
-    account: OnDevice,
-    ground: OnDevice,
-    statics: OnDevice,
+    world: int,
+    table: Tables,
+    found: Findings,
     dt_s: float,
     substeps: int,
-    gravity_mps2: float,
+    gravity: float,
 ) -> None:  # pragma: no cover - compiled
-    """Step the world of this thread."""
-    world = cuda.grid(1)
-    if world >= len(counts) or not valid[world]:
-        return
-    rows, which, count, w = state[world], spec_of[world], counts[world], work[world]
-    begin_frame(rows, which, specs, w, count, dt_s)
-    reach = circles[world, :count]
+    """Step one world with the bodies ``rows``; ``work`` is scratch."""
+    which, count = table.spec_of[world], table.counts[world]
+    begin_frame(rows, which, table.specs, work, count, dt_s)
+    reach = found.circles[world, :count]
     write_circles(rows, dt_s, reach)
-    found[world] = pairs_of_few(rows, reach, statics, pairs[world])
-    if found[world] > pairs.shape[1]:
-        valid[world], found[world] = False, 0
+    near = pairs_of_few(rows, reach, table.statics, found.pairs[world])
+    if near > found.pairs.shape[1]:
+        found.valid[world], found.near[world] = False, 0
         return
-    own, entries = pairs[world, : found[world]], account[world]
-    for k in range(found[world]):
+    found.near[world] = near
+    own, entries = found.pairs[world, :near], found.account[world]
+    for k in range(near):
         for column in range(ACCOUNT):
             entries[k, column] = 0.0
-    run_frame(rows, which, specs, w, count, own, entries, ground, statics, dt_s, substeps, gravity_mps2)
-    frames[world] += 1
+    run_frame(rows, which, table.specs, work, count, own, entries, table.ground, table.statics, dt_s, substeps, gravity)
+    found.frames[world] += 1
     for i in range(count):
         for axis in range(3):
             if not abs(rows[i].position[axis]) < FARTHEST_M:
-                valid[world] = False
+                found.valid[world] = False
+
+
+def _step_kernel(slots: int, built_of: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel that steps worlds of at most ``slots`` bodies; the sources are part of the name of its file.
+
+    A thread works on copies of its bodies and its scratch in local memory. A GPU interleaves the local memory of the
+    threads of a warp, so all of them together read whole lines, where records lie 1,160 bytes apart.
+    """
+    room = slots * _WORDS
+
+    @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
+    def step(
+        words: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
+    ) -> None:  # pragma: no cover - compiled
+        """Step the world of this thread; ``words`` (W, S * words of a body) are the states."""
+        world = cuda.grid(1)
+        if world >= len(table.counts) or not found.valid[world] or built_of < 0:
+            return
+        bodies = cuda.local.array(room, np.int64)
+        scratch = cuda.local.array(_WORK_WORDS, np.int64)
+        used = table.counts[world] * _WORDS
+        for word in range(used):
+            bodies[word] = words[world, word]
+        _advance(bodies.view(BODY), scratch.view(VEHICLE_WORK)[0], world, table, found, dt_s, substeps, gravity)
+        for word in range(used):
+            words[world, word] = bodies[word]
+
+    return step
+
+
+def _step_kernel_of_many(built_of: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel that steps worlds of any number of bodies, which stay where they lie."""
+
+    @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
+    def step(
+        state: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
+    ) -> None:  # pragma: no cover - compiled
+        """Step the world of this thread; ``state`` (W, S) are the bodies."""
+        world = cuda.grid(1)
+        if world >= len(table.counts) or not found.valid[world] or built_of < 0:
+            return
+        scratch = cuda.local.array(_WORK_WORDS, np.int64)
+        _advance(state[world], scratch.view(VEHICLE_WORK)[0], world, table, found, dt_s, substeps, gravity)
+
+    return step
 
 
 @cuda.jit  # type: ignore[untyped-decorator] # numba has no hints for it
@@ -150,7 +210,7 @@ class GpuWorlds:
         """
         worlds, slots = table.state.shape
         room = _PAIRS_A_WORLD + _PAIRS_A_BODY * slots
-        needed = 2 * table.state.nbytes + worlds * (VEHICLE_WORK.itemsize + 24 * slots + (8 * ACCOUNT + 8) * room)
+        needed = 2 * table.state.nbytes + worlds * (24 * slots + (8 * ACCOUNT + 8) * room)
         free = float(cuda.current_context().get_memory_info()[0])
         if needed > free:
             raise UserError(
@@ -158,14 +218,22 @@ class GpuWorlds:
                 f"{free / 2**30:.1f} GiB free; make fewer worlds, or use device='cpu'"
             )
         self.state, self._first = cuda.to_device(table.state), cuda.to_device(_words(first.state))
-        self._spec_of, self._specs = cuda.to_device(table.spec_of), cuda.to_device(table.specs)
-        self._counts, self.valid = cuda.to_device(table.counts), cuda.to_device(valid)
-        self.frames = cuda.to_device(frames)
-        self._work = cuda.device_array(worlds, VEHICLE_WORK)
-        self._circles = cuda.device_array((worlds, slots, 3), np.float64)
-        self._pairs = cuda.device_array((worlds, room, 2), np.int32)
-        self._found = cuda.to_device(np.zeros(worlds, np.int32))
-        self._account = cuda.device_array((worlds, room, ACCOUNT), np.float64)
+        self.valid, self.frames = cuda.to_device(valid), cuda.to_device(frames)
+        self._table = Tables(
+            cuda.to_device(table.spec_of),
+            cuda.to_device(table.specs),
+            cuda.to_device(table.counts),
+            self._ground,
+            self._statics,
+        )
+        self._found = Findings(
+            self.valid,
+            self.frames,
+            cuda.device_array((worlds, slots, 3), np.float64),
+            cuda.device_array((worlds, room, 2), np.int32),
+            cuda.to_device(np.zeros(worlds, np.int32)),
+            cuda.device_array((worlds, room, ACCOUNT), np.float64),
+        )
         self.is_current = True
 
     def download(self, table: BodyTable, valid: NDArray[np.bool_], frames: NDArray[np.int64]) -> None:
@@ -176,11 +244,12 @@ class GpuWorlds:
 
     def step(self, dt_s: float, substeps: int) -> None:
         """Advance all valid worlds; returns before the device is done."""
-        _launch(
-            _step, len(self._counts), self.state, self._spec_of, self._specs, self._work, self._counts, self.valid,
-            self.frames, self._circles, self._pairs, self._found, self._account, self._ground, self._statics, dt_s,
-            substeps, GRAVITY_MPS2,
-        )  # fmt: skip
+        worlds, slots = self.state.shape
+        common = self._table, self._found, dt_s, substeps, GRAVITY_MPS2
+        if slots <= _MOST_LOCAL:
+            _launch(_step_of(slots), worlds, self._words_of_worlds(), *common)
+        else:
+            _launch(_step_of(0), worlds, self.state, *common)
 
     def set_controls(self, rows: NDArray[np.int32], controls: NDArray[np.float64]) -> None:
         """Set the controls (K, 7) of vehicles in flat rows (K,)."""
@@ -195,17 +264,22 @@ class GpuWorlds:
 
     def reset(self, chosen: NDArray[np.int32]) -> None:
         """Set worlds back to their first state."""
-        words = self.state.view(np.int64).reshape(self.state.shape[0], self.state.shape[1] * _WORDS)
+        words = self._words_of_worlds()
         count = len(chosen) * words.shape[1]
-        _launch(_copy_worlds, count, words, self._first, cuda.to_device(chosen), self.valid, self.frames, self._found)
+        marks = self.valid, self.frames, self._found.near
+        _launch(_copy_worlds, count, words, self._first, cuda.to_device(chosen), *marks)
+
+    def _words_of_worlds(self) -> OnDevice:
+        """Return the states as words (W, S * words of a body)."""
+        return self.state.view(np.int64).reshape(self.state.shape[0], self.state.shape[1] * _WORDS)
 
     def touched(self) -> list[tuple[int, NDArray[np.int32], NDArray[np.float64]]]:
         """Return for each world with near pairs its number, the pairs (P, 2) and their accounts (P, ACCOUNT)."""
-        found = self._found.copy_to_host()
+        found = self._found.near.copy_to_host()
         worlds = np.flatnonzero(found)
         if not len(worlds):
             return []
-        pairs, account = self._pairs.copy_to_host(), self._account.copy_to_host()
+        pairs, account = self._found.pairs.copy_to_host(), self._found.account.copy_to_host()
         return [(int(world), pairs[world, : found[world]], account[world, : found[world]]) for world in worlds]
 
     def column(self, name: str) -> DeviceColumn:
@@ -227,6 +301,12 @@ class GpuWorlds:
     def wait() -> None:
         """Wait until the device has done all work."""
         cuda.synchronize()
+
+
+@cache
+def _step_of(slots: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel for worlds of so many bodies; 0: of any number."""
+    return _step_kernel(slots, SOURCES) if slots else _step_kernel_of_many(SOURCES)
 
 
 def _launch(kernel: Any, count: int, *arguments: Any) -> None:  # noqa: ANN401 - numba's

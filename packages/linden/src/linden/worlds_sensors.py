@@ -1,10 +1,11 @@
 """`WorldsSensors`: lidars and cameras in many worlds at once, by the functions of the server's sensors.
 
-One scene and one caster serve all worlds. The bodies of one world after the other are put into it and its rays cast.
+One scene and one caster serve all worlds. On the processor the bodies of one world after the other are put into it and
+its rays cast. On a GPU one launch casts the rays of all worlds (`worlds_sensors_gpu`), except those of colour pictures.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from linden.scenery.actors.actor_meshes import actor_meshes
 from linden.scenery.actors.posing import walker_frames
 from linden.sensors.camera.cameras import CAMERAS, pixels
 from linden.sensors.camera.labels import depth_m
-from linden.sensors.casting.caster import Caster, Instances
+from linden.sensors.casting.caster import CPU, Caster, Instances
 from linden.sensors.casting.choose import check_device
 from linden.sensors.casting.embree import EmbreeCaster
 from linden.sensors.casting.thread_pool import in_stretches, processors
@@ -33,6 +34,9 @@ from linden.sensors.runtime.visible_actors import Motion, PartRows, instances_of
 from linden.sensors.view import Seen, SensorLook
 from linden.simulation.episode import Episode
 from linden.simulation.snapshot_rows import gather_motion
+
+if TYPE_CHECKING:
+    from linden.worlds_sensors_gpu import Eyes, GpuSensors
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -61,8 +65,8 @@ _FEWEST = 8
 class LidarScans(NamedTuple):
     """Sweeps of lidars in K worlds, of C channels, the uppermost first, of P rays each."""
 
-    points: F32  # (K, C, P, 4): x, y, z in the sensor's frame, m, and the intensity from 0 to 1; zeros without a return
-    hit: NDArray[np.bool_]  # (K, C, P) whether the ray returned
+    points: Any  # (K, C, P, 4): x, y, z in the sensor's frame, m, and the intensity from 0 to 1; zeros without a return
+    hit: Any  # (K, C, P) whether the ray returned
 
 
 class Asked(NamedTuple):
@@ -94,6 +98,7 @@ class WorldsSensors:
         self._base: Seen | None = None
         self._lights = LightStateCache()
         self._casters: list[EmbreeCaster] = []
+        self._gpu: GpuSensors | None = None
 
     # -- what the bodies are -------------------------------------------------------------------------------------------
 
@@ -131,11 +136,14 @@ class WorldsSensors:
 
     # -- measurements --------------------------------------------------------------------------------------------------
 
-    def lidar(self, attributes: dict[str, Value], start_deg: float, interval_s: float, asked: Asked) -> LidarScans:
+    def lidar(
+        self, attributes: dict[str, Value], start_deg: float, interval_s: float, asked: Asked, *, on_device: bool
+    ) -> LidarScans:
         """Return the sweeps of lidars in worlds (K,), each from ``start_deg`` on for a time.
 
         Raises:
-            UserError: there is no such attribute, or it takes no such value; or the sweeps need too much memory.
+            UserError: there is no such attribute, or it takes no such value; or the sweeps need too much memory; or
+                they depend on chance and are to stay on the device.
         """
         whole_turn: dict[str, Value] = {"rotation_frequency": 1.0 / interval_s}
         description = _described(LIDAR, whole_turn | attributes)
@@ -143,23 +151,31 @@ class WorldsSensors:
         fired = fire(fan, start_deg, interval_s)
         shape = len(asked.chosen), len(fired.up), len(fired.sine)
         _refuse_too_much(shape, 17, "rays")
+        if on_device:
+            sensors, eyes = self._on_gpu(asked)
+            return LidarScans(*sensors.scans(fan, losses, start_deg, interval_s, eyes))
         found = LidarScans(np.zeros((*shape, 4), np.float32), np.zeros(shape, np.bool_))
         points, hit = found.points.reshape(shape[0], -1, 4), found.hit.reshape(shape[0], -1)
+        own = [losses._replace(seed=losses.seed + world) for world in asked.chosen.tolist()]
+        numbers = np.maximum(asked.frames - 1, 0).tolist()
+        if self._device != CPU:
+            sensors, eyes = self._on_gpu(asked)
+            sensors.write_scans(fan, own, start_deg, interval_s, eyes, numbers, points, hit)
+            return found
 
         def measure(index: int, seen: Seen, pose: Transform) -> None:
-            number = max(0, int(asked.frames[index]) - 1)
-            own = losses._replace(seed=losses.seed + int(asked.chosen[index]))
-            _, met, rays = scan(fan, own, fired, number, pose, seen.caster)
+            _, met, rays = scan(fan, own[index], fired, numbers[index], pose, seen.caster)
             points[index, rays], hit[index, rays] = met, True
 
         self._look(asked, measure, side_by_side=True)
         return found
 
-    def pictures(self, kind: str, attributes: dict[str, Value], asked: Asked) -> F32 | U8:
+    def pictures(self, kind: str, attributes: dict[str, Value], asked: Asked, *, on_device: bool) -> Any:  # noqa: ANN401
         """Return pictures in worlds (K,): metres (K, H, W), tags (K, H, W), or R, G, B (K, H, W, 3).
 
         Raises:
-            UserError: there is no such kind or attribute, or it takes no such value; or they need too much memory.
+            UserError: there is no such kind or attribute, or it takes no such value; or they need too much memory; or
+                coloured ones are to stay on the device.
         """
         if kind not in CAMERA_OF:
             raise UserError(f"there are no pictures of kind {kind!r}; there are {', '.join(sorted(CAMERA_OF))}")
@@ -170,6 +186,12 @@ class WorldsSensors:
             raise UserError(_reason(error)) from error
         shape: tuple[int, ...] = (len(asked.chosen), picture.spec.height_px, picture.spec.width_px)
         _refuse_too_much(shape, 4, "pixels")
+        if kind == "rgb" and on_device:
+            raise UserError("pictures of kind 'rgb' come back to the host; use on_device=False")
+        if kind != "rgb" and self._device != CPU:
+            sensors, eyes = self._on_gpu(asked)
+            there = sensors.picture(kind, picture.spec, eyes)
+            return there if on_device else there.numpy()
         found = np.empty((*shape, 3) if kind == "rgb" else shape, np.float32 if kind == "depth" else np.uint8)
 
         def measure(index: int, seen: Seen, pose: Transform) -> None:
@@ -194,8 +216,7 @@ class WorldsSensors:
         """
         self._refuse_unknown(asked.table, asked.chosen)
         base, count = self._scene(), len(asked.chosen)
-        if self._parts is None:
-            self._parts = PartRows.of(self._descriptions, actor_meshes())
+        self._known_parts()  # by one thread, before several ask for them
         lit = [self._lit(base, row) for row in asked.colours] if asked.colours is not None else [base] * count
         spare: list[Caster] = []
 
@@ -221,10 +242,25 @@ class WorldsSensors:
         else:
             work(0, count)
 
+    def _on_gpu(self, asked: Asked) -> "tuple[GpuSensors, Eyes]":
+        """Return what measures on the GPU, and where the sensors and bodies of the worlds are.
+
+        Raises:
+            UserError: a body was not made by `Worlds.spawn`.
+        """
+        from linden.sensors.casting.warp_worlds import WorldBodies  # noqa: PLC0415 - Warp, which users of a GPU have
+        from linden.worlds_sensors_gpu import Eyes, GpuSensors  # noqa: PLC0415 - likewise
+
+        self._refuse_unknown(asked.table, asked.chosen)
+        if self._gpu is None:
+            self._gpu = GpuSensors(self._scene())
+        poses, begins, bodies = self._gathered(asked, slice(0, len(asked.chosen)))
+        own = WorldBodies(begins.astype(np.int32), bodies.mesh, bodies.pose)
+        return self._gpu, Eyes(matrices(poses).astype(np.float32), own)
+
     def _grow_casters(self, caster: EmbreeCaster) -> None:
         """Make a caster for each thread, and the trees of all bodies."""
-        assert self._parts is not None
-        caster.build_trees(self._parts.mesh)
+        caster.build_trees(self._known_parts().mesh)
         while len(self._casters) < processors():
             self._casters.append(caster.sibling())
 
@@ -261,8 +297,7 @@ class WorldsSensors:
             len(poses), poses, relative, parent, moved_by, flat["position"], flat["rotation"], flat["velocity"],
             flat["angular_velocity"], flat["acceleration"], np.zeros((len(poses), 15), np.float32),
         )  # fmt: skip
-        assert self._parts is not None
-        parts = _parts_of(self._parts, self.described[chosen][alive].astype(np.intp))
+        parts = _parts_of(self._known_parts(), self.described[chosen][alive].astype(np.intp))
         motion = Motion(
             matrices(poses[: len(rows)]),
             flat["velocity"][rows],
@@ -272,6 +307,12 @@ class WorldsSensors:
         )
         bodies = instances_of(parts, motion, self._frames(table, rows))
         return poses[len(rows) :], np.searchsorted(world[parts.actor], np.arange(len(chosen) + 1)), bodies
+
+    def _known_parts(self) -> PartRows:
+        """Return the parts of all designs that were spawned."""
+        if self._parts is None:
+            self._parts = PartRows.of(self._descriptions, actor_meshes())
+        return self._parts
 
     def _frames(self, table: BodyTable, rows: I32) -> F64:
         """Return the frames (A, 14, 3, 4) of the parts of bodies in flat rows (A,)."""

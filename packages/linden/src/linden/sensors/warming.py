@@ -46,7 +46,7 @@ def warm_rays() -> None:
     rays = aim(fired, number, Transform())
     hits = seen.caster.closest(rays, _FAN.range_m, coherent=True, outer=True)
     zero = np.zeros(fired.rays, np.float32)
-    points_of(fired, number, hits, _LOSSES, Chances(zero, zero))
+    points_of(fired, number, hits.distance_m, _LOSSES, Chances(zero, zero))
     semantic_points_of(fired, rays.direction, hits, owners_of(seen))
     seen.caster.blocked(Rays(*rays), _FAN.range_m)
 

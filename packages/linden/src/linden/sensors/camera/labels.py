@@ -29,7 +29,7 @@ U32 = NDArray[np.uint32]
 FAR_M = 1000.0
 """Nothing is seen beyond; CARLA's depth pictures end there."""
 
-_DEPTH_STEPS = 16777215.0  # 2^24 - 1
+DEPTH_STEPS = 16777215.0  # 2^24 - 1
 
 
 def depth(spec: CameraSpec, hits: Hits, vectors: F32) -> U8:
@@ -41,7 +41,7 @@ def depth_m(image: U8) -> F32:
     """Return the metres (height, width) that a depth picture says."""
     blue, green, red = (image[..., channel].astype(np.uint32) for channel in range(3))
     code = red | green << np.uint32(8) | blue << np.uint32(16)
-    metres: F32 = (code * (FAR_M / _DEPTH_STEPS)).astype(np.float32)
+    metres: F32 = (code * (FAR_M / DEPTH_STEPS)).astype(np.float32)
     return metres
 
 
@@ -86,7 +86,7 @@ def depth_loop(distance_m: F32, vectors: F32, pixel: I32, image: U8, start: int,
         if at < 0:
             continue
         ahead_m = min(distance_m[ray] * vectors[ray, 0], np.float32(FAR_M))
-        code = np.uint32(np.float64(ahead_m) * (_DEPTH_STEPS / FAR_M) + 0.5)
+        code = np.uint32(np.float64(ahead_m) * (DEPTH_STEPS / FAR_M) + 0.5)
         image[at, 0] = np.uint8(code >> np.uint32(16))
         image[at, 1] = np.uint8((code >> np.uint32(8)) & np.uint32(255))
         image[at, 2] = np.uint8(code & np.uint32(255))

@@ -146,13 +146,14 @@ class WarpCaster:
     """Answers rays by Warp; see ``linden.sensors.casting.caster.Caster``.
 
     Attributes:
+        bodies: the meshes that bodies may have.
         trees: how often a tree was built; work captured before another was built would ask one that is gone.
     """
 
     def __init__(self, standing: Mesh, bodies: list[Mesh], device: str = "cuda") -> None:
         """Build the tree of what stands, on a device of Warp's: "cuda", "cuda:1" or, slowly, "cpu"."""
         self.device = device
-        self._bodies, self.trees = bodies, 0
+        self.bodies, self.trees = bodies, 0
         self._standing = self._tree(self._vectors(standing.vertices_m), standing.triangles)
         self._mesh: NDArray[np.int32] = np.zeros(0, np.int32)
         self._poses = 0
@@ -162,6 +163,15 @@ class WarpCaster:
     def gpu(self) -> Gpu:
         """The device, as kernels of numba's use it beside this caster; there is none where the device is CPU."""
         return Gpu(self.device)
+
+    @property
+    def standing_id(self) -> int:
+        """Number by which a kernel asks the tree of what stands; 0 where nothing stands."""
+        return 0 if self._standing is None else int(self._standing.id)
+
+    def tree_of(self, mesh: Mesh) -> Any:  # noqa: ANN401 - Warp's
+        """Return the tree of a mesh in its own frame, None where it has no triangles."""
+        return self._tree(self._vectors(mesh.vertices_m), mesh.triangles)
 
     def _vectors(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of Warp's
         return wp.array(np.ascontiguousarray(values, np.float32), dtype=wp.vec3, device=self.device)
@@ -179,7 +189,7 @@ class WarpCaster:
 
     def _assemble(self, mesh: NDArray[np.int32]) -> None:
         """Put the triangles of these bodies together, each about its own origin."""
-        bodies = [self._bodies[number] for number in mesh.tolist()]
+        bodies = [self.bodies[number] for number in mesh.tolist()]
         corners = np.array([len(body.vertices_m) for body in bodies], np.int64)
         faces = np.array([len(body.triangles) for body in bodies], np.int64)
         before = np.concatenate([[0], np.cumsum(corners)]).astype(np.uint32)

@@ -52,15 +52,21 @@ def scan(
 
     Returns how many points each channel has, the points (M, 4), and the ray (M,) of each.
     """
+    rays, chances = draw(losses, fired.rays, number)
+    hits = caster.closest(aim(fired, rays, pose), fan.range_m, coherent=True, outer=True)
+    return points_of(fired, rays, hits.distance_m, losses, chances)
+
+
+def draw(losses: Losses, count: int, number: int) -> tuple[I32, Chances]:
+    """Return which of ``count`` rays (N,) measurement ``number`` fires, and what chance does to each of them."""
     dice = dice_of(losses.seed, number)
-    rays: I32 = np.arange(fired.rays, dtype=np.int32)
+    rays: I32 = np.arange(count, dtype=np.int32)
     if losses.general_rate > 0.0:
         rays = rays[dice.random(len(rays), np.float32) >= losses.general_rate]
-    hits = caster.closest(aim(fired, rays, pose), fan.range_m, coherent=True, outer=True)
     error_m: F32 = np.zeros(len(rays), np.float32)
     if losses.deviation_m > 0.0:
         error_m = np.float32(losses.deviation_m) * dice.standard_normal(len(rays), np.float32)
-    return points_of(fired, rays, hits, losses, Chances(dice.random(len(rays), np.float32), error_m))
+    return rays, Chances(dice.random(len(rays), np.float32), error_m)
 
 
 def read_losses(description: ActorDescription) -> Losses:

@@ -44,6 +44,16 @@ class Losses(NamedTuple):
     deviation_m: float
     seed: int
 
+    @property
+    def limit(self) -> float:
+        """Intensity up to which returns get lost by chance; 0 where none does."""
+        return self.intensity_limit if self.zero_intensity > 0.0 else 0.0
+
+    @property
+    def by_chance(self) -> bool:
+        """Whether any of it depends on the dice."""
+        return self.general_rate > 0.0 or self.deviation_m > 0.0 or self.limit > 0.0
+
 
 class Chances(NamedTuple):
     """What the dice say of each ray (N,): from 0 to 1, and how far off its distance is, m."""
@@ -52,14 +62,22 @@ class Chances(NamedTuple):
     error_m: F32
 
 
-def points_of(fired: Fired, number: I32, hits: Hits, losses: Losses, chances: Chances) -> tuple[U32, F32, I32]:
-    """Return how many points each channel has, the points (M, 4), and the number (M,) of the ray of each."""
+def points_of(fired: Fired, number: I32, distance_m: F32, losses: Losses, chances: Chances) -> tuple[U32, F32, I32]:
+    """Return how many points each channel has, the points (M, 4), and the number (M,) of the ray of each.
+
+    Args:
+        fired: the rays of the sweep.
+        number: (N,) which of them were cast.
+        distance_m: (N,) to what they met, infinite where they met nothing.
+        losses: what the lidar misses.
+        chances: what the dice say of each ray that was cast.
+    """
     count, points = np.zeros(len(fired.up), np.uint32), np.empty((len(number), 4), np.float32)
     kept = np.empty(len(number), np.int32)
-    limit = losses.intensity_limit if losses.zero_intensity > 0.0 else 0.0
+    limit = losses.limit
     alpha = losses.zero_intensity / limit if limit > 0.0 else 0.0
     rates = np.array([losses.attenuation_per_m, limit, alpha, 1.0 - losses.zero_intensity], np.float32)
-    made = _write(*fired, number, hits.distance_m, rates, *chances, count, points, kept)
+    made = _write(*fired, number, distance_m, rates, *chances, count, points, kept)
     return count, points[:made], kept[:made]
 
 
