@@ -1,7 +1,8 @@
 """Worlds on a GPU that is none: numba's simulator runs the kernels as Python.
 
-``python worlds_gpu_in_python.py`` steps worlds on both sides and prints what differs, a line each. It runs in a process
-of its own, with NUMBA_ENABLE_CUDASIM=1 and NUMBA_DISABLE_JIT=1: both count for a whole process.
+``python worlds_gpu_in_python.py`` steps worlds on both sides and prints what differs, a line each. With ``--in-place``
+the bodies stay where they lie, as those of worlds with many bodies do. It runs in a process of its own, with
+NUMBA_ENABLE_CUDASIM=1 and NUMBA_DISABLE_JIT=1: both count for a whole process.
 """
 
 import sys
@@ -9,6 +10,7 @@ import sys
 import numpy as np
 from numba.cuda.simulator import kernelapi
 
+from linden import worlds_gpu
 from linden.blueprints.library import packaged
 from linden.maps.ground import Ground
 from linden.physics.bodies import FARTHEST_M, Bodies
@@ -16,7 +18,6 @@ from linden.physics.columns import BodyTable
 from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.physics.step import advance_worlds, contacts_of
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
-from linden.worlds_gpu import GpuWorlds
 
 WORLDS, STEPS, DT_S, SUBSTEPS = 3, 6, 0.05, 2
 WALL = (-1.0, 0.0, 0.5)
@@ -54,7 +55,7 @@ def main() -> None:
     ground, statics = Ground.flat(), Statics.of(standing)
     here, there, first = made(), made(), made()
     valid, frames = np.ones(WORLDS, bool), np.zeros(WORLDS, np.int64)
-    gpu = GpuWorlds(ground, statics)
+    gpu = worlds_gpu.GpuWorlds(ground, statics)
     gpu.upload(there, first, valid, frames)
     rows = np.arange(WORLDS, dtype=np.int32) * here.state.shape[1]
     controls = np.zeros((WORLDS, 7))
@@ -91,4 +92,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    if "--in-place" in sys.argv:
+        worlds_gpu._MOST_LOCAL = 0
     main()

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,11 +14,17 @@ from linden.worlds import Worlds
 TESTS = Path(__file__).parents[3] / "tests"
 
 
-def test_the_kernels_of_the_gpu_step_worlds_as_the_processor_does() -> None:
+@pytest.mark.parametrize("where", [(), ("--in-place",)], ids=["local memory", "in place"])
+def test_the_kernels_of_the_gpu_step_worlds_as_the_processor_does(where: tuple[str, ...]) -> None:
     program = TESTS / "fakes" / "worlds_gpu_in_python.py"
     environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(TESTS)}
     done = subprocess.run(
-        [sys.executable, str(program)], env=environment, capture_output=True, text=True, check=False, timeout=200.0
+        [sys.executable, str(program), *where],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=200.0,
     )
     assert done.returncode == 0, done.stderr
     said = done.stdout.splitlines()
@@ -37,6 +44,10 @@ def test_a_device_that_is_not_there_gets_a_sentence(monkeypatch: pytest.MonkeyPa
 
 def test_worlds_on_the_processor_have_no_columns_on_a_gpu() -> None:
     worlds = Worlds(count=2)
+    worlds.spawn("vehicle.tesla.model3", 30)
+    for measure in (worlds.lidar, partial(worlds.pictures, "depth")):
+        with pytest.raises(UserError, match="on_device=True needs worlds on a GPU; make them with device='cuda'"):
+            measure([0.0] * 6, on_device=True)
     worlds.wait()
     with pytest.raises(UserError, match="read `state`, or use device='cuda'"):
         worlds.on_device("position")

@@ -5,7 +5,7 @@ Needs the extra ``gpu`` (numba-cuda). Nothing is copied from the device before i
 
 import math
 from functools import cache
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numba import cuda as numba_cuda
@@ -29,6 +29,8 @@ cuda: Any = numba_cuda
 OnDevice: TypeAlias = Any
 """An array of numba's on the device, or one of its records."""
 
+Part = TypeVar("Part", Ground, Statics)
+
 THREADS = 64
 """Of a block: the step needs as many registers as a thread can have."""
 
@@ -37,7 +39,7 @@ _PAIRS_A_WORLD, _PAIRS_A_BODY = 16, 8
 
 _WORDS, _WORK_WORDS = BODY.itemsize // 8, VEHICLE_WORK.itemsize // 8
 
-_MOST_LOCAL = 2
+_MOST_LOCAL = 16
 """Bodies of a world that are copied into the local memory of its thread; there is a kernel for each number."""
 
 
@@ -197,9 +199,7 @@ class GpuWorlds:
             cuda.current_context()
         except Exception as error:  # numba's errors of a missing driver are of several kinds
             raise UserError(f"no CUDA device can be used ({error}); use device='cpu'") from error
-        self._ground, self._statics = (
-            type(part)(*(cuda.to_device(np.ascontiguousarray(column)) for column in part)) for part in (ground, statics)
-        )
+        self._ground, self._statics = _copy(ground), _copy(statics)
         self.is_current = False
 
     def upload(self, table: BodyTable, first: BodyTable, valid: NDArray[np.bool_], frames: NDArray[np.int64]) -> None:
@@ -311,6 +311,11 @@ def _step_of(slots: int) -> Any:  # noqa: ANN401 - numba's
 
 def _launch(kernel: Any, count: int, *arguments: Any) -> None:  # noqa: ANN401 - numba's
     kernel[math.ceil(count / THREADS), THREADS](*arguments)
+
+
+def _copy(part: Part) -> Part:
+    """Return a copy of columns on the device."""
+    return type(part)(*(cuda.to_device(np.ascontiguousarray(column)) for column in part))
 
 
 def _words(state: NDArray[Any]) -> NDArray[np.int64]:

@@ -254,9 +254,23 @@ class WorldsSensors:
         self._refuse_unknown(asked.table, asked.chosen)
         if self._gpu is None:
             self._gpu = GpuSensors(self._scene())
-        poses, begins, bodies = self._gathered(asked, slice(0, len(asked.chosen)))
-        own = WorldBodies(begins.astype(np.int32), bodies.mesh, bodies.pose)
-        return self._gpu, Eyes(matrices(poses).astype(np.float32), own)
+        self._known_parts()  # by one thread, before several ask for them
+        lots = [slice(first, first + _TOGETHER) for first in range(0, len(asked.chosen), _TOGETHER)]
+        found: list[tuple[F32, NDArray[np.intp], Instances]] = [None] * len(lots)  # type: ignore[list-item] # filled next
+
+        def work(start: int, stop: int) -> None:
+            for lot in range(start, stop):
+                poses, begins, bodies = self._gathered(asked, lots[lot])
+                found[lot] = matrices(poses).astype(np.float32), begins, bodies
+
+        in_stretches(len(lots), work, multiple=1, fewest=1)
+        counts = np.concatenate([np.diff(begins) for _, begins, _ in found])
+        own = WorldBodies(
+            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+            np.concatenate([bodies.mesh for _, _, bodies in found]),
+            np.concatenate([bodies.pose for _, _, bodies in found]),
+        )
+        return self._gpu, Eyes(np.concatenate([poses for poses, _, _ in found]), own)
 
     def _grow_casters(self, caster: EmbreeCaster) -> None:
         """Make a caster for each thread, and the trees of all bodies."""

@@ -46,9 +46,32 @@ class WorldHits(NamedTuple):
 
 
 @wp.kernel  # type: ignore[untyped-decorator]
+def _ready(
+    pose: wp.array2d(dtype=wp.vec4),  # type: ignore[valid-type] # (B, 3) rows of the matrices. Warp's types are values
+    mesh: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
+    balls: wp.array(dtype=wp.vec4),  # type: ignore[valid-type] # around each mesh, in its frame
+    inward: wp.array(dtype=wp.mat33),  # type: ignore[valid-type]
+    place: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    ball: wp.array(dtype=wp.vec4),  # type: ignore[valid-type]
+) -> None:
+    body = wp.tid()
+    x = pose[body, 0]
+    y = pose[body, 1]
+    z = pose[body, 2]
+    turn = wp.mat33(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2])
+    origin = wp.vec3(x[3], y[3], z[3])
+    scale = wp.length(wp.vec3(x[0], y[0], z[0]))
+    own = balls[mesh[body]]
+    middle = turn * wp.vec3(own[0], own[1], own[2]) + origin
+    inward[body] = wp.transpose(turn) * (1.0 / (scale * scale))
+    place[body] = origin
+    ball[body] = wp.vec4(middle[0], middle[1], middle[2], own[3] * scale)
+
+
+@wp.kernel  # type: ignore[untyped-decorator]
 def _closest(
     standing: wp.uint64,
-    trees: wp.array(dtype=wp.uint64),  # type: ignore[valid-type] # Warp's types are values
+    trees: wp.array(dtype=wp.uint64),  # type: ignore[valid-type]
     first_face: wp.array(dtype=wp.int32),  # type: ignore[valid-type] # of what stands and of each mesh of bodies
     begins: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
     mesh: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
@@ -173,7 +196,7 @@ class WorldsCaster:
         self._tags = self._put(tags, wp.uint8)
         self._trees: dict[int, Any] = {}
         self._tree_ids = np.zeros(len(caster.bodies), np.uint64)
-        self._tree_ids_there: Any = None
+        self._tree_ids_there = self._balls_there = None
         self._balls = np.zeros((len(caster.bodies), 4), np.float32)
         self._constants: dict[int, tuple[object, Any]] = {}
 
@@ -192,13 +215,15 @@ class WorldsCaster:
             wp.empty((worlds, rays), dtype=wp.float32, device=self._device),
             wp.empty((worlds, rays), dtype=wp.int32, device=self._device),
         )
-        turned = bodies.pose[:, :, :3]
-        scale = np.linalg.norm(turned[:, :, 0], axis=1)
-        own = self._balls[bodies.mesh]
-        ball = np.empty((len(bodies.mesh), 4), np.float32)
-        ball[:, :3] = (turned @ own[:, :3, None])[:, :, 0] + bodies.pose[:, :, 3]
-        ball[:, 3] = own[:, 3] * scale
-        inward = np.transpose(turned, (0, 2, 1)) / (scale * scale)[:, None, None]
+        count = len(bodies.mesh)
+        mesh = self._put(bodies.mesh, wp.int32)
+        inward, place, ball = (
+            wp.empty(count, dtype=kind, device=self._device) for kind in (wp.mat33, wp.vec3, wp.vec4)
+        )
+        if count:
+            pose = self._put(bodies.pose, wp.vec4)
+            given = [pose, mesh, self._balls_there]
+            wp.launch(_ready, dim=count, inputs=given, outputs=[inward, place, ball], device=self._device)
         wp.launch(
             _closest,
             dim=(worlds, rays),
@@ -207,10 +232,10 @@ class WorldsCaster:
                 self._tree_ids_there,
                 self._first_face,
                 self._put(bodies.begins, wp.int32),
-                self._put(bodies.mesh, wp.int32),
-                self._put(inward, wp.mat33),
-                self._put(bodies.pose[:, :, 3], wp.vec3),
-                self._put(ball, wp.vec4),
+                mesh,
+                inward,
+                place,
+                ball,
                 self._put(eyes[:, :, 3], wp.vec3),
                 self._put(eyes[:, :, :3], wp.mat33),
                 self._constant(towards, wp.vec3),
@@ -265,6 +290,7 @@ class WorldsCaster:
             self._balls[number, 3] = 1.001 * np.linalg.norm(body.vertices_m - middle, axis=1).max() + 1e-3
         if new or self._tree_ids_there is None:
             self._tree_ids_there = self._put(self._tree_ids, wp.uint64)
+            self._balls_there = self._put(self._balls, wp.vec4)
 
     def _constant(self, values: NDArray[Any], dtype: Any) -> DeviceArray:  # noqa: ANN401 - Warp's
         """Return the device's copy of an array that is the same object at each call, such as the rays of a camera."""
