@@ -30,7 +30,15 @@ from linden.sensors.devices.lidar.firing_pattern import fire, read_fan
 from linden.sensors.devices.lidar.sensor import read_losses, scan
 from linden.sensors.runtime.light_state import LightStateCache
 from linden.sensors.runtime.sensor_scene import SensorScene
-from linden.sensors.runtime.visible_actors import Motion, PartRows, instances_of, matrices, put_vehicles, rigid_frames
+from linden.sensors.runtime.visible_actors import (
+    Motion,
+    PartRows,
+    instances_of,
+    matrices,
+    poses_of_parts,
+    put_vehicles,
+    rigid_frames,
+)
 from linden.sensors.view import Seen, SensorLook
 from linden.simulation.episode import Episode
 from linden.simulation.snapshot_rows import gather_motion
@@ -254,23 +262,9 @@ class WorldsSensors:
         self._refuse_unknown(asked.table, asked.chosen)
         if self._gpu is None:
             self._gpu = GpuSensors(self._scene())
-        self._known_parts()  # by one thread, before several ask for them
-        lots = [slice(first, first + _TOGETHER) for first in range(0, len(asked.chosen), _TOGETHER)]
-        found: list[tuple[F32, NDArray[np.intp], Instances]] = [None] * len(lots)  # type: ignore[list-item] # filled next
-
-        def work(start: int, stop: int) -> None:
-            for lot in range(start, stop):
-                poses, begins, bodies = self._gathered(asked, lots[lot])
-                found[lot] = matrices(poses).astype(np.float32), begins, bodies
-
-        in_stretches(len(lots), work, multiple=1, fewest=1)
-        counts = np.concatenate([np.diff(begins) for _, begins, _ in found])
-        own = WorldBodies(
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-            np.concatenate([bodies.mesh for _, _, bodies in found]),
-            np.concatenate([bodies.pose for _, _, bodies in found]),
-        )
-        return self._gpu, Eyes(np.concatenate([poses for poses, _, _ in found]), own)
+        poses, begins, parts, rows, places = self._placed(asked, slice(0, len(asked.chosen)))
+        pose, _ = poses_of_parts(parts, places, self._frames(asked.table, rows))
+        return self._gpu, Eyes(matrices(poses).astype(np.float32), WorldBodies(begins, parts.mesh, pose))
 
     def _grow_casters(self, caster: EmbreeCaster) -> None:
         """Make a caster for each thread, and the trees of all bodies."""
@@ -294,8 +288,25 @@ class WorldsSensors:
         states = self._lights.of(self._episode)
         return seen._replace(object_lights=states.lights, object_light_colour=states.colour)
 
-    def _gathered(self, asked: Asked, part: slice) -> tuple[F64, NDArray[np.intp], Instances]:
+    def _gathered(self, asked: Asked, part: slice) -> tuple[F64, I32, Instances]:
         """Return the poses (K, 6) of sensors in some worlds, and all bodies with where each world's begin (K + 1,)."""
+        poses, begins, parts, rows, places = self._placed(asked, part)
+        bodies = asked.table.state.reshape(-1)
+        motion = Motion(
+            places,
+            bodies["velocity"][rows],
+            bodies["angular_velocity"][rows],
+            (rows % asked.table.state.shape[1] + 1).astype(np.uint32),
+            np.zeros(len(rows), np.uint32),
+        )
+        return poses, begins, instances_of(parts, motion, self._frames(asked.table, rows))
+
+    def _placed(self, asked: Asked, part: slice) -> tuple[F64, I32, PartRows, I32, F64]:
+        """Return where sensors and bodies of some worlds (K,) are.
+
+        They are the poses (K, 6) of the sensors, where the parts of each world begin (K + 1,), the parts of all bodies,
+        the flat rows (A,) of the bodies, and their poses (A, 3, 4).
+        """
         table, slot, chosen, transform = asked.table, asked.slot, asked.chosen[part], asked.transform[part]
         flat, slots = table.state.reshape(-1), table.state.shape[1]
         alive = table.state["alive"][chosen] & (table.state["kind"][chosen] != NO_BODY)
@@ -312,15 +323,8 @@ class WorldsSensors:
             flat["angular_velocity"], flat["acceleration"], np.zeros((len(poses), 15), np.float32),
         )  # fmt: skip
         parts = _parts_of(self._known_parts(), self.described[chosen][alive].astype(np.intp))
-        motion = Motion(
-            matrices(poses[: len(rows)]),
-            flat["velocity"][rows],
-            flat["angular_velocity"][rows],
-            (own_slot + 1).astype(np.uint32),
-            np.zeros(len(rows), np.uint32),
-        )
-        bodies = instances_of(parts, motion, self._frames(table, rows))
-        return poses[len(rows) :], np.searchsorted(world[parts.actor], np.arange(len(chosen) + 1)), bodies
+        begins = np.searchsorted(world[parts.actor], np.arange(len(chosen) + 1)).astype(np.int32)
+        return poses[len(rows) :], begins, parts, rows, matrices(poses[: len(rows)])
 
     def _known_parts(self) -> PartRows:
         """Return the parts of all designs that were spawned."""

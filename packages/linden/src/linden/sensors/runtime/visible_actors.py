@@ -89,11 +89,7 @@ class Motion(NamedTuple):
 def instances_of(parts: PartRows, motion: Motion, frames: F64) -> Instances:
     """Return the parts in their places; ``frames`` (A, 14, 3, 4) are those of the parts in their actors'."""
     actor = parts.actor
-    turn, inner = motion.place[actor, :, :3], frames[actor, parts.frame]
-    pose = np.empty((len(actor), 3, 4), np.float32)
-    pose[:, :, :3] = turn @ inner[:, :, :3] * parts.scale[:, None, None]
-    arm_m = (turn @ inner[:, :, 3:])[:, :, 0]
-    pose[:, :, 3] = motion.place[actor, :, 3] + arm_m
+    pose, arm_m = poses_of_parts(parts, motion.place, frames)
     turning = motion.turning_radps[actor]
     return Instances(
         mesh=parts.mesh,
@@ -105,6 +101,20 @@ def instances_of(parts: PartRows, motion: Motion, frames: F64) -> Instances:
         velocity_mps=(motion.velocity_mps[actor] + np.cross(turning, arm_m)).astype(np.float32),
         turning_radps=turning.astype(np.float32),
     )
+
+
+def poses_of_parts(parts: PartRows, place: F64, frames: F64) -> tuple[NDArray[np.float32], F64]:
+    """Return the poses (P, 3, 4) of parts, and how far (P, 3) in m they are from their actors' origins.
+
+    ``place`` (A, 3, 4) are the poses of actors, and ``frames`` (A, 14, 3, 4) those of the parts in them.
+    """
+    actor = parts.actor
+    turn, inner = place[actor, :, :3], frames[actor, parts.frame]
+    pose = np.empty((len(actor), 3, 4), np.float32)
+    pose[:, :, :3] = turn @ inner[:, :, :3] * parts.scale[:, None, None]
+    arm_m: F64 = (turn @ inner[:, :, 3:])[:, :, 0]
+    pose[:, :, 3] = place[actor, :, 3] + arm_m
+    return pose, arm_m
 
 
 def rigid_frames(count: int) -> F64:
