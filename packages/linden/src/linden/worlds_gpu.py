@@ -5,7 +5,6 @@ Needs the extra ``gpu`` (numba-cuda). Nothing is copied from the device before i
 
 import math
 from functools import cache
-from types import SimpleNamespace
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -40,17 +39,8 @@ _PAIRS_A_WORLD, _PAIRS_A_BODY = 16, 8
 
 _WORDS, _WORK_WORDS = BODY.itemsize // 8, VEHICLE_WORK.itemsize // 8
 
-_NONE = np.zeros(2, np.int32)
-
 _MOST_LOCAL = 16
 """Bodies of a world that are copied into the local memory of its thread; there is a kernel for each number."""
-
-
-QUIET, BUSY = 0, 1
-"""Kinds of worlds: nothing can touch in this step and nothing tumbles, or something may.
-
-Threads of one warp that do different things wait for each other. So the two kinds are stepped by launches of their own.
-"""
 
 
 class Tables(NamedTuple):
@@ -72,8 +62,6 @@ class Findings(NamedTuple):
     pairs: OnDevice  # (W, P, 2)
     near: OnDevice  # (W,) how many pairs there are
     account: OnDevice  # (W, P, ACCOUNT)
-    listed: OnDevice  # (2, W) the worlds of each kind, in any order
-    lengths: OnDevice  # (2,) how many they are
 
 
 class DeviceColumn:
@@ -86,7 +74,7 @@ class DeviceColumn:
 
 
 @cuda.jit(device=True)  # type: ignore[untyped-decorator] # numba has no hints for it
-def _run(
+def _advance(
     rows: OnDevice,
     work: OnDevice,
     world: int,
@@ -96,8 +84,16 @@ def _run(
     substeps: int,
     gravity: float,
 ) -> None:  # pragma: no cover - compiled
-    """Advance the bodies ``rows`` of one world by all substeps; ``work`` is scratch."""
-    which, count, near = table.spec_of[world], table.counts[world], found.near[world]
+    """Step one world with the bodies ``rows``; ``work`` is scratch."""
+    which, count = table.spec_of[world], table.counts[world]
+    begin_frame(rows, which, table.specs, work, count, dt_s)
+    reach = found.circles[world, :count]
+    write_circles(rows, dt_s, reach)
+    near = pairs_of_few(rows, reach, table.statics, found.pairs[world])
+    if near > found.pairs.shape[1]:
+        found.valid[world], found.near[world] = False, 0
+        return
+    found.near[world] = near
     own, entries = found.pairs[world, :near], found.account[world]
     for k in range(near):
         for column in range(ACCOUNT):
@@ -110,39 +106,8 @@ def _run(
                 found.valid[world] = False
 
 
-def _begin_kernel(built_of: int) -> Any:  # noqa: ANN401 - numba's
-    """Return the kernel that begins a frame and puts each world on one of two lists.
-
-    The sources are part of the name under which numba keeps what it compiled.
-    """
-
-    @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
-    def begin(state: OnDevice, table: Tables, found: Findings, dt_s: float) -> None:  # pragma: no cover - compiled
-        """Begin the frame of the world of this thread; ``state`` (W, S) are the bodies."""
-        world = cuda.grid(1)
-        if world >= len(table.counts) or not found.valid[world] or built_of < 0:
-            return
-        scratch = cuda.local.array(_WORK_WORDS, np.int64)
-        rows, count = state[world], table.counts[world]
-        begin_frame(rows, table.spec_of[world], table.specs, scratch.view(VEHICLE_WORK)[0], count, dt_s)
-        reach = found.circles[world, :count]
-        write_circles(rows, dt_s, reach)
-        near = pairs_of_few(rows, reach, table.statics, found.pairs[world])
-        if near > found.pairs.shape[1]:
-            found.valid[world], found.near[world] = False, 0
-            return
-        found.near[world] = near
-        busy = near > 0
-        for i in range(count):
-            busy = busy or rows[i].tumbling
-        kind = BUSY if busy else QUIET
-        found.listed[kind, cuda.atomic.add(found.lengths, kind, 1)] = world
-
-    return begin
-
-
-def _quiet_kernel(slots: int, built_of: int) -> Any:  # noqa: ANN401 - numba's
-    """Return the kernel that steps quiet worlds of at most ``slots`` bodies.
+def _step_kernel(slots: int, built_of: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel that steps worlds of at most ``slots`` bodies; the sources are part of the name of its file.
 
     A thread works on copies of its bodies and its scratch in local memory. A GPU interleaves the local memory of the
     threads of a warp, so all of them together read whole lines, where records lie 1,160 bytes apart.
@@ -154,39 +119,34 @@ def _quiet_kernel(slots: int, built_of: int) -> Any:  # noqa: ANN401 - numba's
         words: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
     ) -> None:  # pragma: no cover - compiled
         """Step the world of this thread; ``words`` (W, S * words of a body) are the states."""
-        place = cuda.grid(1)
-        if place >= found.lengths[QUIET] or built_of < 0:
+        world = cuda.grid(1)
+        if world >= len(table.counts) or not found.valid[world] or built_of < 0:
             return
-        world = found.listed[QUIET, place]
         bodies = cuda.local.array(room, np.int64)
         scratch = cuda.local.array(_WORK_WORDS, np.int64)
         used = table.counts[world] * _WORDS
         for word in range(used):
             bodies[word] = words[world, word]
-        _run(bodies.view(BODY), scratch.view(VEHICLE_WORK)[0], world, table, found, dt_s, substeps, gravity)
+        _advance(bodies.view(BODY), scratch.view(VEHICLE_WORK)[0], world, table, found, dt_s, substeps, gravity)
         for word in range(used):
             words[world, word] = bodies[word]
 
     return step
 
 
-def _kernel_in_place(built_of: int) -> Any:  # noqa: ANN401 - numba's
-    """Return the kernel that steps the worlds of a list with any number of bodies, which stay where they lie.
-
-    Threads that touch or tumble take different ways through the code. Each then reads its record alone, which local
-    memory would scatter.
-    """
+def _step_kernel_of_many(built_of: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel that steps worlds of any number of bodies, which stay where they lie."""
 
     @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
     def step(
-        state: OnDevice, work: OnDevice, kind: int, table: Tables, found: Findings, dt_s: float, substeps: int,
-        gravity: float,
-    ) -> None:  # fmt: skip # pragma: no cover - compiled
-        """Step the world of this thread; ``state`` (W, S) are the bodies, ``work`` (W,) is scratch."""
-        place = cuda.grid(1)
-        if place < found.lengths[kind] and built_of >= 0:
-            world = found.listed[kind, place]
-            _run(state[world], work[world], world, table, found, dt_s, substeps, gravity)
+        state: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
+    ) -> None:  # pragma: no cover - compiled
+        """Step the world of this thread; ``state`` (W, S) are the bodies."""
+        world = cuda.grid(1)
+        if world >= len(table.counts) or not found.valid[world] or built_of < 0:
+            return
+        scratch = cuda.local.array(_WORK_WORDS, np.int64)
+        _advance(state[world], scratch.view(VEHICLE_WORK)[0], world, table, found, dt_s, substeps, gravity)
 
     return step
 
@@ -250,7 +210,7 @@ class GpuWorlds:
         """
         worlds, slots = table.state.shape
         room = _PAIRS_A_WORLD + _PAIRS_A_BODY * slots
-        needed = 2 * table.state.nbytes + worlds * (VEHICLE_WORK.itemsize + 8 + 24 * slots + (8 * ACCOUNT + 8) * room)
+        needed = 2 * table.state.nbytes + worlds * (24 * slots + (8 * ACCOUNT + 8) * room)
         free = float(cuda.current_context().get_memory_info()[0])
         if needed > free:
             raise UserError(
@@ -273,10 +233,7 @@ class GpuWorlds:
             cuda.device_array((worlds, room, 2), np.int32),
             cuda.to_device(np.zeros(worlds, np.int32)),
             cuda.device_array((worlds, room, ACCOUNT), np.float64),
-            cuda.device_array((2, worlds), np.int32),
-            cuda.to_device(np.zeros(2, np.int32)),
         )
-        self._work = cuda.device_array(worlds, VEHICLE_WORK)
         self.is_current = True
 
     def download(self, table: BodyTable, valid: NDArray[np.bool_], frames: NDArray[np.int64]) -> None:
@@ -289,13 +246,10 @@ class GpuWorlds:
         """Advance all valid worlds; returns before the device is done."""
         worlds, slots = self.state.shape
         common = self._table, self._found, dt_s, substeps, GRAVITY_MPS2
-        self._found.lengths.copy_to_device(_NONE)
-        _launch(_kernels().begin, worlds, self.state, self._table, self._found, dt_s)
-        _launch(_kernels().in_place, worlds, self.state, self._work, BUSY, *common)
         if slots <= _MOST_LOCAL:
-            _launch(_kernel_of_quiet(slots), worlds, self._words_of_worlds(), *common)
+            _launch(_step_of(slots), worlds, self._words_of_worlds(), *common)
         else:
-            _launch(_kernels().in_place, worlds, self.state, self._work, QUIET, *common)
+            _launch(_step_of(0), worlds, self.state, *common)
 
     def set_controls(self, rows: NDArray[np.int32], controls: NDArray[np.float64]) -> None:
         """Set the controls (K, 7) of vehicles in flat rows (K,)."""
@@ -350,15 +304,9 @@ class GpuWorlds:
 
 
 @cache
-def _kernels() -> SimpleNamespace:
-    """Return the kernels that worlds of any number of bodies need."""
-    return SimpleNamespace(begin=_begin_kernel(SOURCES), in_place=_kernel_in_place(SOURCES))
-
-
-@cache
-def _kernel_of_quiet(slots: int) -> Any:  # noqa: ANN401 - numba's
-    """Return the kernel for quiet worlds of so many bodies."""
-    return _quiet_kernel(slots, SOURCES)
+def _step_of(slots: int) -> Any:  # noqa: ANN401 - numba's
+    """Return the kernel for worlds of so many bodies; 0: of any number."""
+    return _step_kernel(slots, SOURCES) if slots else _step_kernel_of_many(SOURCES)
 
 
 def _launch(kernel: Any, count: int, *arguments: Any) -> None:  # noqa: ANN401 - numba's
