@@ -100,7 +100,7 @@ class Highway(enum.Enum):
     YES = "yes"
 
 
-class Speeding(enum.Enum):
+class OtherSpeeding(enum.Enum):
     """Whether another vehicle is more than 1 m/s faster than the posted limit."""
 
     NO = "no"
@@ -132,7 +132,7 @@ class Characteristics:
     obstruction: Obstruction = Obstruction.NONE
     partner: Partner = Partner.VEHICLE
     highway: Highway = Highway.NO
-    speeding: Speeding = Speeding.NO
+    speeding: OtherSpeeding = OtherSpeeding.NO
     violation: Violation = Violation.NONE
 
     def among(self, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:

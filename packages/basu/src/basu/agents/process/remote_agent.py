@@ -198,16 +198,16 @@ class RemoteAgent:
         self._is_bound = True
         self.manual = self._call("setup", place, "setup", self._setup_limit_s) is True
 
-    def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
+    def open_sensor_streams(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Let the agent's process listen to the agent's sensors; True: it does."""
-        self._call("hear", list(sensors), "setup", self._setup_limit_s)
+        self._call("open_sensor_streams", list(sensors), "setup", self._setup_limit_s)
         self._hears = True
         return True
 
-    def stop_hearing(self) -> None:
+    def close_sensor_streams(self) -> None:
         """Let it stop; nothing happens where the process is gone."""
         if self._process.alive and not self._has_failed:
-            self._call("stop_hearing", None, "destroy", self._setup_limit_s)
+            self._call("close_sensor_streams", None, "destroy", self._setup_limit_s)
 
     def ask(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> None:
         """Ask for the control for the frame that the world has reached, and do not wait for it.

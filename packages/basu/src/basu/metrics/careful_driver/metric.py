@@ -20,8 +20,8 @@ from basu.metrics.registry import NAME_WIDTH, Drive, Metric, register
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.careful_driver.counterfactual import Answer
-    from basu.metrics.careful_driver.encounters import Encounter
+    from basu.metrics.careful_driver.counterfactual import ModelOutcome
+    from basu.metrics.careful_driver.encounters import VehicleEncounter
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
@@ -101,7 +101,7 @@ def in_words(row: Mapping[str, Any]) -> str:
     return f"at {row['t_s']:.1f} s with {row['other']}, {row['situation']}: {'; '.join(said)}"
 
 
-def _row(history: History, encounter: Encounter) -> dict[str, Any]:
+def _row(history: History, encounter: VehicleEncounter) -> dict[str, Any]:
     """One encounter as plain values."""
     frame = history.frames[encounter.tick]
     has_begun = encounter.begin_tick >= 0
@@ -121,7 +121,7 @@ def _row(history: History, encounter: Encounter) -> dict[str, Any]:
     }
 
 
-def _answer(answer: Answer) -> dict[str, Any]:
+def _answer(answer: ModelOutcome) -> dict[str, Any]:
     """One answer as plain values: what was not measured is null."""
     found = answer._asdict()
     for name in ("reaction_s", "least_gap_m"):
