@@ -4,7 +4,7 @@ import pytest
 
 from basu.metrics.careful_driver.counterfactual import ModelOutcome, answers
 from basu.metrics.careful_driver.encounters import encounters
-from basu.metrics.careful_driver.standard_grid import MODELS
+from basu.metrics.careful_driver.metric import MODELS
 from basu.records.history import History
 from fakes.lane_conflicts import LANE_M, braking, cut_in, meeting, sideways, steady
 

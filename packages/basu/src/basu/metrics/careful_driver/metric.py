@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.careful_driver.counterfactual import answers, start
 from basu.metrics.careful_driver.encounters import encounters
 from basu.metrics.careful_driver.eu_cut_in import demand
+from basu.metrics.careful_driver.fsm import Fsm
+from basu.metrics.careful_driver.human import CarefulHuman
 from basu.metrics.careful_driver.model import Situation
-from basu.metrics.careful_driver.standard_grid import MODELS
+from basu.metrics.careful_driver.reg157 import Reg157
+from basu.metrics.careful_driver.rss import Rss
 from basu.metrics.json_schema import choice, flag, integer, listing, number, record, text
 from basu.metrics.registry import NAME_WIDTH, Drive, Metric, register
 
@@ -22,9 +25,11 @@ if TYPE_CHECKING:
 
     from basu.metrics.careful_driver.counterfactual import ModelOutcome
     from basu.metrics.careful_driver.encounters import VehicleEncounter
+    from basu.metrics.careful_driver.model import CarefulDriver
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
+MODELS: tuple[CarefulDriver, ...] = (Fsm(), CarefulHuman(), Rss(), Reg157())
 _ANSWER = record(
     about_="what one model would have done",
     model=choice([model.name for model in MODELS]),

@@ -12,11 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.careful_driver.fsm import Fsm
-from basu.metrics.careful_driver.human import CarefulHuman
 from basu.metrics.careful_driver.model import Situation
-from basu.metrics.careful_driver.reg157 import Reg157
-from basu.metrics.careful_driver.rss import Rss
 from basu.metrics.careful_driver.simulation import RelativeMotion, Sizes, drive
 
 if TYPE_CHECKING:
@@ -24,7 +20,6 @@ if TYPE_CHECKING:
 
     from basu.metrics.careful_driver.model import CarefulDriver, Flags, Numbers
 
-MODELS: tuple[CarefulDriver, ...] = (Fsm(), CarefulHuman(), Rss(), Reg157())
 LENGTH_M, WIDTH_M, APART_M = 4.3, 1.9, 1.6
 STEP_S, RATE_HZ, STEPS = 0.1, 10.0, 350
 LATERAL_MPS2 = 1.5

@@ -14,7 +14,7 @@ import numpy as np
 from basu.metrics.careful_driver.encounters import WANDERING_M
 from basu.metrics.careful_driver.model import G_MPS2, Situation
 from basu.metrics.careful_driver.simulation import RelativeMotion, Sizes, drive
-from basu.metrics.careful_driver.standard_grid import LENGTH_M, RATE_HZ, STEP_S, STEPS, WIDTH_M
+from standard_grid import LENGTH_M, RATE_HZ, STEP_S, STEPS, WIDTH_M
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
