@@ -152,7 +152,7 @@ def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterato
 
 
 def _made_with(document: dict[str, Any]) -> str:
-    """File and versions."""
+    """Return the campaign's file and the versions that drove it."""
     identity = document["identity"]
     versions = [
         f"{name.removeprefix('the version of ')} {text}" for name, text in identity.items() if "version" in name

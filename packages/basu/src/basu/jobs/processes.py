@@ -88,7 +88,7 @@ class Processes:
         return [(by_connection[each], by_connection[each].answer()) for each in wait(list(by_connection), timeout_s)]
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing, because the workers hold nothing open."""
 
 
 def worker_command(descriptor: int, parent: int) -> list[str]:

@@ -235,7 +235,7 @@ class DeviatingAgent(BehavioralAgent):
         return driver, facts
 
     def _advance(self, ego: DrivenVehicle, driver: BehavioralDriver) -> None:
-        """From one phase to the next."""
+        """Go from one phase to the next when it is due."""
         assert self.deviation is not None
         assert driver.place is not None
         s_m = driver.place.s_m

@@ -33,7 +33,7 @@ class CooperativeAgent(BehavioralAgent):
     """Drives as ``behavioral``; what it hears adds people to see, lines to wait at and time at service stops."""
 
     def setup(self) -> None:
-        """Hear nothing yet."""
+        """Begin a drive without messages from other vehicles."""
         super().setup()
         self.people, self.order = WarnedPeople(), StopOrder()
         self.headways = headways_of(self.seen_route)

@@ -299,7 +299,7 @@ class RemoteAgent:
             raise AgentCrashedError(sentence) from _there(error)
 
     def _understood(self, method: str, read: Callable[[], T]) -> T:
-        """What its process answered, read.
+        """Return the value that the agent's process answered.
 
         Raises:
             AgentCrashedError: it is not what BASU's own code in that process answers.
@@ -334,7 +334,7 @@ def _point(given: Sequence[Any]) -> RoutePoint:
 
 
 def _spec(given: dict[str, Any]) -> SensorSpec:
-    """A sensor out of JSON.
+    """Return the sensor that a JSON object describes.
 
     Raises:
         TypeError: a value is of another kind than BASU's own code in that process gives.

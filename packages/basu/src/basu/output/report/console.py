@@ -149,6 +149,6 @@ def verdict_word(row: dict[str, Any]) -> str:
 
 
 def _line(row: dict[str, Any]) -> str:
-    """One scenario."""
+    """Return the line of one scenario: time, verdict, name and reason."""
     when = f"{row['began_s']:8.1f} s" if row["began_s"] is not None else " " * 10
     return f"  {when}  {verdict_word(row):<21} {row['id']} ({row['scenario']}): {row['message']}"
