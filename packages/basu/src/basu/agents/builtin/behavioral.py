@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 import numpy as np
 
-from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.basic import TEST_RUNS, BasicAgent
 from basu.agents.builtin.driving.driver import SIGHT_M, BehavioralDriver
 from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL
 from basu.agents.builtin.driving.task import make_task
@@ -214,13 +214,8 @@ class DeviatingAgent(BehavioralAgent):
         return control
 
     def config(self) -> dict[str, str]:
-        """The route, car and weather of the thesis's test runs."""
-        return {
-            "routes": "routes/linden_short.xml",
-            "sensors": "config/sensors.json",
-            "vehicle": "vehicle.tesla.model3",
-            "weather": "ClearSunset",
-        }
+        """Return the route, car and weather of the thesis's test runs."""
+        return dict(TEST_RUNS)
 
     def _get_in(self, pose: carla.Transform) -> tuple[BehavioralDriver, VehicleFacts]:
         """Choose what to hit, too."""
