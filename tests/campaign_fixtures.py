@@ -12,7 +12,7 @@ import pytest
 
 from basu.agents.process.remote_agent import find_agent
 from basu.campaigns import command, planning
-from basu.jobs.job import Answer, PlayerSpec, Ready, versions
+from basu.jobs.job import PlayerAnswer, PlayerSpec, Ready, versions
 
 PLAYER = """
 import contextlib, io, json, math, os, signal, tarfile, time
@@ -122,7 +122,7 @@ class _Worker:
     def __init__(self, spec: PlayerSpec) -> None:
         self._stack = contextlib.ExitStack()
         self._play = self._stack.enter_context(spec.open())
-        self.owed: Callable[[], Answer] | None = lambda: Ready(versions())
+        self.owed: Callable[[], PlayerAnswer] | None = lambda: Ready(versions())
 
     def give(self, data: Any) -> None:
         self.owed = lambda: self._play(data)
@@ -140,7 +140,7 @@ class _Here:
     def start(self) -> _Worker:
         return _Worker(self._spec)
 
-    def answers(self, workers: Sequence[_Worker], timeout_s: float) -> list[tuple[_Worker, Answer]]:
+    def answers(self, workers: Sequence[_Worker], timeout_s: float) -> list[tuple[_Worker, PlayerAnswer]]:
         found = []
         for worker in workers:
             if worker.owed is not None:

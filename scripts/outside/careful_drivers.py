@@ -19,8 +19,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from basu.metrics.careful_driver.grids_ahead import cut_out_contacts, deceleration_contacts
-from basu.metrics.careful_driver.standard_grid import GAPS_M, LATERAL_MPS, MODELS, by_speeds, contacts, speeds_kmh
+from basu.metrics.careful_driver.metric import MODELS
+
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+
+from grids_ahead import cut_out_contacts, deceleration_contacts
+from standard_grid import GAPS_M, LATERAL_MPS, by_speeds, contacts, speeds_kmh
 
 if TYPE_CHECKING:
     from basu.metrics.careful_driver.model import CarefulDriver

@@ -14,7 +14,7 @@ from basu.records.recording_files import CONDITIONS_FILE
 from basu.routing.weather import WEATHER_FIELDS
 from basu_carla_log import Log, read_log
 from basu_carla_log.sources import source
-from basu_truth.rig import looking
+from basu_truth.rig import cameras_and_lidars
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,7 +65,7 @@ def read_run(folder: Path, sensor_file: Path | None) -> RecordedRun:
             "basu recorded it: run it again with --record"
         )
     conditions = read_conditions(folder)
-    sensors = looking(conditions.sensors, str(folder), sensor_file)
+    sensors = cameras_and_lidars(conditions.sensors, str(folder), sensor_file)
     log = read_log(log_file)
     if log.frames == 0:
         raise UserError(f"{log_file} has no frame; run it again with --record")

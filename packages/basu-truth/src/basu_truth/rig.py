@@ -50,7 +50,7 @@ def transform_of(pose: Pose) -> carla.Transform:
     return carla.Transform(place, carla.Rotation(roll=pose.roll_deg, pitch=pose.pitch_deg, yaw=pose.yaw_deg))
 
 
-def looking(specs: Iterable[SensorSpec], run: str, source: Path | None) -> tuple[SensorSpec, ...]:
+def cameras_and_lidars(specs: Iterable[SensorSpec], run: str, source: Path | None) -> tuple[SensorSpec, ...]:
     """Return the cameras and lidars of a run, or of the sensor file ``source`` instead.
 
     Raises:
@@ -67,7 +67,9 @@ def looking(specs: Iterable[SensorSpec], run: str, source: Path | None) -> tuple
     return found
 
 
-def declared(specs: Iterable[SensorSpec], library: carla.BlueprintLibrary, step_s: float) -> tuple[Declared, ...]:
+def declared_sensors(
+    specs: Iterable[SensorSpec], library: carla.BlueprintLibrary, step_s: float
+) -> tuple[Declared, ...]:
     """Return the sensors with the defaults of their blueprints.
 
     Raises:

@@ -15,7 +15,7 @@ from basu.routing.weather import changed
 from basu_carla_log.server_replay import begin_replay, simulator_for
 from basu_truth.categories import OF_LABEL, category_of
 from basu_truth.geometry import matrix_of
-from basu_truth.rig import Declared, blueprint_of, declared
+from basu_truth.rig import Declared, blueprint_of, declared_sensors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -71,7 +71,9 @@ class Scene:
         self._motion = PlacedMotion()
         self._actors: dict[str, dict[str, carla.Sensor]] = {}
         self.world = begin_replay(client, run.log, run.conditions.vehicle_id)
-        self.declared: tuple[Declared, ...] = declared(run.sensors, self.world.get_blueprint_library(), run.step_s)
+        self.declared: tuple[Declared, ...] = declared_sensors(
+            run.sensors, self.world.get_blueprint_library(), run.step_s
+        )
         self.things: tuple[Kind, ...] = tuple(_things(self.world))
 
     def shots(self) -> Iterator[Shot]:

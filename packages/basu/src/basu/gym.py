@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.conditions import STEP_S, SimulatorSpec, Traffic
-from basu.episode import Answer, Episode, EpisodeSpec, Towns, case_spec
+from basu.episode import DriverResponse, Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
@@ -138,7 +138,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             UserError: the action has a wrong shape, or a value that is no number in -1..1.
             SimulatorError: the simulator failed.
         """
-        answer, vehicle = Answer(control_from(action)), self.episode.vehicle
+        answer, vehicle = DriverResponse(control_from(action)), self.episode.vehicle
         self.episode.step([answer])
         if vehicle.outcome is None and vehicle.ending is not None:  # it has arrived: its last frame is recorded
             self.episode.step([answer])

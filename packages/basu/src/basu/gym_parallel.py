@@ -13,7 +13,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from basu.conditions import ROLE, SimulatorSpec
-from basu.episode import Answer, Driver, Episode, Towns
+from basu.episode import DriverResponse, DriverSetup, Episode, Towns
 from basu.errors import UserError
 from basu.gym import route_spec
 from basu.gym_spaces import Reward, action_space, control_from, observation_space
@@ -70,7 +70,7 @@ class ShuttlesEnv(pettingzoo.ParallelEnv):  # type: ignore[misc]  # the package 
         self._observation_spaces: dict[str, gymnasium.spaces.Space[Any]] = {
             name: observation_space() for name in self.possible_agents
         }
-        drivers = [Driver(role=name, start_m=headway_m * place) for place, name in enumerate(self.possible_agents)]
+        drivers = [DriverSetup(role=name, start_m=headway_m * place) for place, name in enumerate(self.possible_agents)]
         self._resources = contextlib.ExitStack()
         simulator = self._resources.enter_context(
             simulator_for(SimulatorSpec(host=host, port=port, timeout_s=timeout_s))
@@ -131,7 +131,10 @@ class ShuttlesEnv(pettingzoo.ParallelEnv):  # type: ignore[misc]  # the package 
         if not self.agents:
             return {}, {}, {}, {}, {}
         self.episode.step(
-            [Answer(control_from(actions[name])) if name in self.agents else None for name in self.possible_agents]
+            [
+                DriverResponse(control_from(actions[name])) if name in self.agents else None
+                for name in self.possible_agents
+            ]
         )
         found = {name: self._steps[name].next() for name in self.agents}
         self.agents = [name for name in self.agents if not (found[name][2] or found[name][3])]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.jobs.job import Answer, Play
+    from basu.jobs.job import Play, PlayerAnswer
     from basu.jobs.processes import ProcessWorker
 
 Observations = dict[str, "NDArray[np.float32]"]
@@ -189,7 +189,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self._replace(ended)
         return found
 
-    def _answers(self, indices: Sequence[int]) -> dict[int, Answer]:
+    def _answers(self, indices: Sequence[int]) -> dict[int, PlayerAnswer]:
         """An answer of each of these workers, in their order; one that takes too long is ended.
 
         Raises:
@@ -197,7 +197,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         """
         deadline_s = time.monotonic() + self._limit_s
         waiting = {self._workers[index]: index for index in indices}
-        found: dict[int, Answer] = {}
+        found: dict[int, PlayerAnswer] = {}
         while waiting:
             rest_s = deadline_s - time.monotonic()
             answers = self._backend.answers(list(waiting), rest_s) if rest_s > 0.0 else []

@@ -12,7 +12,7 @@ import pytest
 
 from basu.errors import UserError
 from basu.jobs import processes
-from basu.jobs.job import Answer, Done, Job, Lost, PlayerSpec, Ready
+from basu.jobs.job import Done, Job, Lost, PlayerAnswer, PlayerSpec, Ready
 from basu.jobs.playing import play_here, play_jobs
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
@@ -132,7 +132,7 @@ class OtherVersions:
     def start(self) -> "OtherVersions":
         return self
 
-    def answers(self, workers: Sequence[Any], timeout_s: float) -> list[tuple[Any, Answer]]:
+    def answers(self, workers: Sequence[Any], timeout_s: float) -> list[tuple[Any, PlayerAnswer]]:
         return [(self, Ready({"basu": "0.0.1", "carla": "0.9.16", "python": "3.10"}))]
 
     def end(self, *, at_once: bool) -> None:

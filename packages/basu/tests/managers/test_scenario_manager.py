@@ -19,7 +19,7 @@ from basu.managers.scenario_results import results_of
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
-from basu.output.report.console import met
+from basu.output.report.console import scenario_lines
 from basu.output.report.documents import RESULT_SCHEMA, mistakes, read_schema
 from basu.routing import Route
 from basu.routing.planned_route import until
@@ -250,7 +250,7 @@ def test_what_was_not_reached_is_reported_as_such() -> None:
     assert row["message"] == "it waits at 10 m of the route, and the run ended before: the agent raised KeyError"
     schema = read_schema(RESULT_SCHEMA)
     assert list(mistakes(row, {**schema["$defs"]["scenario"], "$defs": schema["$defs"]})) == []
-    text = "\n".join(met([row]))
+    text = "\n".join(scenario_lines([row]))
     assert "0 of 0 passed, 0 not exercised; 0 of 1 reached" in text
     assert "not reached" in text
 

@@ -97,7 +97,7 @@ class World:
 
     @property
     def spawn_points(self) -> tuple[Transform, ...]:
-        """The map's recommended spawn points."""
+        """Return the map's recommended spawn points."""
         return self.episode.map.spawn_points
 
     @property

@@ -17,7 +17,7 @@ from basu.scenarios.stage import EGO
 from basu.testing import careful, rehearse
 from basu_openscenario.exporting import scenario_runner
 from basu_openscenario.exporting.bodies import entity_of
-from basu_openscenario.exporting.conditions import Rehearsed
+from basu_openscenario.exporting.conditions import RehearsedCase
 from basu_openscenario.exporting.motions import motions_of
 from basu_openscenario.exporting.phases import phases_of
 from basu_openscenario.exporting.storyboard import PHASE, StoryboardWriter
@@ -98,7 +98,7 @@ def exported_case(playable: Playable, scenario: Scenario, road: str, player: str
         entities.add_scenario_object(name, entity_of(spec.blueprint, by_agent=False))
     places = {EGO: scenario.place.at(-scenario.place.trigger_s_m), **{name: one.pose for name, one in specs.items()}}
     make_writer = scenario_runner.ScenarioRunnerWriter if player == SCENARIO_RUNNER else StoryboardWriter
-    writer = make_writer(Rehearsed(scenario.place.route, played, STEP_S), phases)
+    writer = make_writer(RehearsedCase(scenario.place.route, played, STEP_S), phases)
     try:
         storyboard = xosc.StoryBoard(writer.init(motions, places), writer.stop(scenario.timeout_s))
         storyboard.add_act(writer.act(motions))

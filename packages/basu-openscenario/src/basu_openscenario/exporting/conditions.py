@@ -39,7 +39,7 @@ STILL_M = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Test:
+class ExportedTest:
     """A condition: of an entity, or of the time where that is None."""
 
     entity: str | None
@@ -47,12 +47,12 @@ class Test:
     delay_s: float = 0.0
 
 
-Tests: TypeAlias = tuple[tuple[Test, ...], ...]
+Tests: TypeAlias = tuple[tuple[ExportedTest, ...], ...]
 """Groups of tests: true where all tests of one group are."""
 
 
 @dataclass(frozen=True, slots=True)
-class Rehearsed:
+class RehearsedCase:
     """What the conditions of a case are made of."""
 
     route: Route
@@ -69,7 +69,7 @@ class Rehearsed:
         return int(np.searchsorted(self.played.times_s, time_s - 1e-6))
 
 
-def tests_of(node: Behaviour, case: Rehearsed) -> Tests:
+def tests_of(node: Behaviour, case: RehearsedCase) -> Tests:
     """Return a trigger, or a parallel node of triggers, as groups of tests.
 
     Raises:
@@ -86,29 +86,29 @@ def tests_of(node: Behaviour, case: Rehearsed) -> Tests:
     return TRIGGERS[kind](node, case)
 
 
-def _travelled(case: Rehearsed, s_m: float) -> Test:
+def _travelled(case: RehearsedCase, s_m: float) -> ExportedTest:
     """Return the test whether the ego has come so far along its route."""
-    return Test(EGO, xosc.TraveledDistanceCondition(round(max(s_m - case.start_s_m, 0.0), 3)))
+    return ExportedTest(EGO, xosc.TraveledDistanceCondition(round(max(s_m - case.start_s_m, 0.0), 3)))
 
 
-def _passes(node: triggers.EgoPasses, case: Rehearsed) -> Tests:
+def _passes(node: triggers.EgoPasses, case: RehearsedCase) -> Tests:
     """Return the test for a place of the route."""
     return ((_travelled(case, node.s_m),),)
 
 
-def _fired(node: Behaviour, case: Rehearsed) -> Tests:
+def _fired(node: Behaviour, case: RehearsedCase) -> Tests:
     """Return the test for the place of the route at which a trigger came true that depends on the route alone."""
     at_s = case.played.spans_s[node][1]
     assert at_s is not None, "a guard came true"
     return ((_travelled(case, float(case.played.ego_s_m[case.frame_at(at_s)])),),)
 
 
-def _arrives(_: triggers.EgoArrives, case: Rehearsed) -> Tests:
+def _arrives(_: triggers.EgoArrives, case: RehearsedCase) -> Tests:
     """Return the test for the end of the route."""
     return ((_travelled(case, case.route.length_m - AT_END_M - SLACK_M),),)
 
 
-def _beyond(node: triggers.EgoBeyond, case: Rehearsed) -> Tests:
+def _beyond(node: triggers.EgoBeyond, case: RehearsedCase) -> Tests:
     """Return the test for an actor behind the ego, where that actor stands.
 
     Raises:
@@ -120,7 +120,7 @@ def _beyond(node: triggers.EgoBeyond, case: Rehearsed) -> Tests:
     return _fired(node, case)
 
 
-def _bands(node: Behaviour, case: Rehearsed, s_m: float, reach_m: Callable[[float], float]) -> Tests:
+def _bands(node: Behaviour, case: RehearsedCase, s_m: float, reach_m: Callable[[float], float]) -> Tests:
     """Return the tests for a place that the ego is to reach in some time: in each band of speed, a distance.
 
     The middle of one band is the speed at which the trigger came true in the rehearsal. Its distance is the one of that
@@ -136,21 +136,21 @@ def _bands(node: Behaviour, case: Rehearsed, s_m: float, reach_m: Callable[[floa
     assert at_s is not None, "a guard came true"
     frame = case.frame_at(at_s)
     fired_mps = float(case.played.trails[EGO][frame, 3])
-    found: list[tuple[Test, ...]] = [(_travelled(case, s_m),)]
+    found: list[tuple[ExportedTest, ...]] = [(_travelled(case, s_m),)]
     for nth in range(-math.floor(fired_mps / BAND_MPS), math.ceil((FASTEST_MPS - fired_mps) / BAND_MPS)):
         middle_mps = fired_mps + nth * BAND_MPS
         from_m = s_m - reach_m(middle_mps) if nth else float(case.played.ego_s_m[frame])
         faster = xosc.SpeedCondition(round(max(middle_mps - BAND_MPS / 2.0, 0.0), 3), xosc.Rule.greaterThan)
-        found.append((Test(EGO, faster), _travelled(case, from_m)))
+        found.append((ExportedTest(EGO, faster), _travelled(case, from_m)))
     return tuple(found)
 
 
-def _arrival(node: triggers.TimeToArrival, case: Rehearsed) -> Tests:
+def _arrival(node: triggers.TimeToArrival, case: RehearsedCase) -> Tests:
     """Return the tests for a time to a place."""
     return _bands(node, case, node.s_m, lambda speed_mps: speed_mps * node.seconds)
 
 
-def _rest(node: triggers.TimeToRest, case: Rehearsed) -> Tests:
+def _rest(node: triggers.TimeToRest, case: RehearsedCase) -> Tests:
     """Return the tests for a time to a stop; see ``basu.scenarios.triggers.along_route.rests_in_s``."""
 
     def reach_m(speed_mps: float) -> float:
@@ -161,7 +161,7 @@ def _rest(node: triggers.TimeToRest, case: Rehearsed) -> Tests:
     return _bands(node, case, node.s_m, reach_m)
 
 
-def _near(node: triggers.Near, _: Rehearsed) -> Tests:
+def _near(node: triggers.Near, _: RehearsedCase) -> Tests:
     """Return the test for two entities near each other."""
     near = xosc.RelativeDistanceCondition(
         node.distance_m,
@@ -171,10 +171,10 @@ def _near(node: triggers.Near, _: Rehearsed) -> Tests:
         freespace=False,
         coordinate_system=xosc.CoordinateSystem.entity,
     )
-    return ((Test(node.one, near),),)
+    return ((ExportedTest(node.one, near),),)
 
 
-def _near_place(node: triggers.NearPlace, _: Rehearsed) -> Tests:
+def _near_place(node: triggers.NearPlace, _: RehearsedCase) -> Tests:
     """Return the test for an entity near a place."""
     near = xosc.DistanceCondition(
         node.distance_m,
@@ -184,32 +184,32 @@ def _near_place(node: triggers.NearPlace, _: Rehearsed) -> Tests:
         distance_type=xosc.RelativeDistanceType.euclidianDistance,
         coordinate_system=xosc.CoordinateSystem.entity,
     )
-    return ((Test(node.actor, near),),)
+    return ((ExportedTest(node.actor, near),),)
 
 
-def _speed(rule: object) -> Callable[[triggers.Faster | triggers.Slower, Rehearsed], Tests]:
+def _speed(rule: object) -> Callable[[triggers.Faster | triggers.Slower, RehearsedCase], Tests]:
     """Return the test for a speed."""
 
-    def tests(node: triggers.Faster | triggers.Slower, _: Rehearsed) -> Tests:
-        return ((Test(node.actor, xosc.SpeedCondition(node.speed_mps, rule)),),)
+    def tests(node: triggers.Faster | triggers.Slower, _: RehearsedCase) -> Tests:
+        return ((ExportedTest(node.actor, xosc.SpeedCondition(node.speed_mps, rule)),),)
 
     return tests
 
 
-def _stands(node: triggers.StandsStill, _: Rehearsed) -> Tests:
+def _stands(node: triggers.StandsStill, _: RehearsedCase) -> Tests:
     """Return the test for an entity that stands."""
-    return ((Test(node.actor, xosc.StandStillCondition(node.seconds)),),)
+    return ((ExportedTest(node.actor, xosc.StandStillCondition(node.seconds)),),)
 
 
-def _elapsed(node: triggers.Elapsed, _: Rehearsed) -> Tests:
+def _elapsed(node: triggers.Elapsed, _: RehearsedCase) -> Tests:
     """Return the test for a time."""
-    return ((Test(None, xosc.SimulationTimeCondition(node.seconds, xosc.Rule.greaterOrEqual)),),)
+    return ((ExportedTest(None, xosc.SimulationTimeCondition(node.seconds, xosc.Rule.greaterOrEqual)),),)
 
 
-def _touches(node: triggers.EgoTouches, _: Rehearsed) -> Tests:
+def _touches(node: triggers.EgoTouches, _: RehearsedCase) -> Tests:
     """Return the test for a contact of the ego with one actor, or with any."""
     kinds = (xosc.ObjectType.vehicle, xosc.ObjectType.pedestrian, xosc.ObjectType.miscellaneous)
-    return tuple((Test(EGO, xosc.CollisionCondition(one)),) for one in ((node.actor,) if node.actor else kinds))
+    return tuple((ExportedTest(EGO, xosc.CollisionCondition(one)),) for one in ((node.actor,) if node.actor else kinds))
 
 
 TRIGGERS: dict[type, Callable[..., Tests]] = {

@@ -16,7 +16,7 @@ from scenariogeneration import xosc
 from basu.errors import ScenarioError
 from basu.files import write_bytes
 from basu_openscenario.exporting import timed_trajectory
-from basu_openscenario.exporting.conditions import Test
+from basu_openscenario.exporting.conditions import ExportedTest
 from basu_openscenario.exporting.storyboard import LIGHTS, StoryboardWriter
 
 if TYPE_CHECKING:
@@ -83,10 +83,10 @@ class ScenarioRunnerWriter(StoryboardWriter):
         return name
 
 
-def _over(event: str) -> Test:
+def _over(event: str) -> ExportedTest:
     """Return the test whether an event is over."""
     done = xosc.StoryboardElementState.completeState
-    return Test(None, xosc.StoryboardElementStateCondition(xosc.StoryboardElementType.event, event, done))
+    return ExportedTest(None, xosc.StoryboardElementStateCondition(xosc.StoryboardElementType.event, event, done))
 
 
 def adapt(root: ET.Element, town: carla.Map) -> None:

@@ -8,7 +8,7 @@ from scenariogeneration import xosc
 
 from basu.errors import ScenarioError
 from basu.scenarios.stage import EGO
-from basu_openscenario.exporting.conditions import Test, tests_of
+from basu_openscenario.exporting.conditions import ExportedTest, tests_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.scenarios.stage import Pose
-    from basu_openscenario.exporting.conditions import Rehearsed, Tests
+    from basu_openscenario.exporting.conditions import RehearsedCase, Tests
     from basu_openscenario.exporting.motions import Motion
     from basu_openscenario.exporting.phases import Guard, Phases
 
@@ -38,7 +38,7 @@ AFTER_S = 1e-4
 class StoryboardWriter:
     """Writes the storyboard of a case."""
 
-    def __init__(self, case: Rehearsed, phases: Phases) -> None:
+    def __init__(self, case: RehearsedCase, phases: Phases) -> None:
         """Take the rehearsal and the phases of its tree."""
         self.case, self.phases = case, phases
         self.markers: dict[Guard, str] = {}
@@ -74,7 +74,7 @@ class StoryboardWriter:
 
     def stop(self, longest_s: float) -> xosc.Trigger:
         """Return the trigger of the end: the last one of the tree, or the time limit."""
-        tests: Tests = ((Test(None, xosc.SimulationTimeCondition(longest_s, xosc.Rule.greaterOrEqual)),),)
+        tests: Tests = ((ExportedTest(None, xosc.SimulationTimeCondition(longest_s, xosc.Rule.greaterOrEqual)),),)
         last = self.phases.last
         if last is not None:
             over_s = float(self.case.played.times_s[-1]) - last.at_s
@@ -121,7 +121,7 @@ class StoryboardWriter:
     def _after(self, guard: Guard | None, later_s: float) -> Tests:
         """Return the tests for a moment after a guard, or after the beginning."""
         if guard is None:
-            return ((Test(None, xosc.SimulationTimeCondition(round(later_s, 3), xosc.Rule.greaterOrEqual)),),)
+            return ((ExportedTest(None, xosc.SimulationTimeCondition(round(later_s, 3), xosc.Rule.greaterOrEqual)),),)
         return ((self._marked(guard, later_s),),)
 
     def _tests(self, guard: Guard, later_s: float) -> Tests:
@@ -136,13 +136,13 @@ class StoryboardWriter:
             first = (self._marked(guard.before, guard.since_s - guard.before.at_s),)
         return tuple((*first, *group) for group in tests)
 
-    def _marked(self, guard: Guard, later_s: float) -> Test:
+    def _marked(self, guard: Guard, later_s: float) -> ExportedTest:
         """Return the test whether a guard has come true so long ago."""
         name = self.markers.setdefault(guard, f"trigger {len(self.markers) + 1}")
         done = xosc.StoryboardElementStateCondition(
             xosc.StoryboardElementType.event, name, xosc.StoryboardElementState.completeState
         )
-        return Test(None, done, max(round(later_s, 3), 0.0))
+        return ExportedTest(None, done, max(round(later_s, 3), 0.0))
 
     def _marking_events(self) -> list[xosc.Event]:
         """Return the events that mark guards; a guard may need that of the one before it."""

@@ -20,7 +20,7 @@ from basu.running.folder_lock import locked
 from basu_truth.dataset.dataset_batch import SCRATCH, DatasetBatch, conditions
 from basu_truth.dataset.player import DatasetSettings, dataset_player
 from basu_truth.dataset.shards import file_endings
-from basu_truth.rig import looking
+from basu_truth.rig import cameras_and_lidars
 
 if TYPE_CHECKING:
     import argparse
@@ -66,7 +66,7 @@ def _sensors(given: Path | None) -> Path:
         UserError: it has no camera and no lidar, or two sensors with files of one name.
     """
     path = find(USUAL_RIG if given is None else str(given), "sensor file").resolve()
-    file_endings(looking((), "", path))
+    file_endings(cameras_and_lidars((), "", path))
     return path
 
 

@@ -188,7 +188,7 @@ class AgentCalls:
                 raise
             raise self._crashed("setup", error) from error
 
-    def hear(self, sensors: Iterable[SpawnedSensor]) -> bool:
+    def open_sensor_streams(self, sensors: Iterable[SpawnedSensor]) -> bool:
         """Note which measurements the agent wants as arrays; False: this does not listen to sensors itself."""
         sensors = tuple(sensors)
         self._as_numpy = frozenset(sensor.id for sensor in sensors if sensor.as_numpy)
@@ -199,7 +199,7 @@ class AgentCalls:
         """Tell the agent which actors its sensors are."""
         self.agent.bind_sensors({sensor.id: sensor.actor_id for sensor in sensors})
 
-    def stop_hearing(self) -> None:
+    def close_sensor_streams(self) -> None:
         """Do nothing: this class does not listen to sensors itself."""
 
     def step(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:

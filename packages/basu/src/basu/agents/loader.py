@@ -186,7 +186,7 @@ def _agents_in(namespace: dict[str, object], module_name: str) -> list[type[Auto
 
 
 def _only(agents: list[type[AutonomousAgent]], where: str) -> type[AutonomousAgent]:
-    """The one agent there is, complete."""
+    """Return the only agent of a module."""
     if not agents:
         raise UserError(
             f"{where} holds no subclass of AutonomousAgent, of BASU's, the leaderboard's or ScenarioRunner's; "

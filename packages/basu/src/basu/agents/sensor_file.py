@@ -109,7 +109,7 @@ def _nearest(wanted: str, known: list[str]) -> str:
 
 
 def _spec(entry: Any, number: int, source: str, form: object) -> SensorSpec:  # noqa: ANN401 - as given
-    """One entry."""
+    """Return the sensor that one entry of the file describes."""
     if not isinstance(entry, dict) or not isinstance(entry.get("type"), str) or not isinstance(entry.get("id"), str):
         raise UserError(f"{source}: sensor {number} needs a 'type' and an 'id', both texts")
     pose = {}

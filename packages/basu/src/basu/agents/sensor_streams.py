@@ -71,11 +71,11 @@ class SpawnedSensor(NamedTuple):
 class SensorListener(Protocol):
     """What receives the measurements for the agent."""
 
-    def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
+    def open_sensor_streams(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Take the agent's sensors; whether the agent's process listens to them itself."""
         ...
 
-    def stop_hearing(self) -> None:
+    def close_sensor_streams(self) -> None:
         """Stop listening; the sensors are about to be destroyed."""
         ...
 

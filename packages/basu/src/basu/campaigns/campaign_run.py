@@ -180,7 +180,7 @@ class CampaignRun(Batch):
         write_json(self.folder / PROGRESS_FILE, document)
 
     def _words(self, *, interrupted: bool) -> str:
-        """How it ended."""
+        """Return how the campaign ended, in words."""
         done, left = self.table.number, self.limit - self.table.number
         where = self.folder if self._mirror is None else self._mirror.store.address
         folder = f"campaign folder   {where}"

@@ -91,7 +91,7 @@ class Journal:
         self._synced_s = time.monotonic()
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """All rows."""
+        """Yield all rows of the table."""
         if self.path.exists():
             with self.path.open("rb") as file:
                 for line in file:

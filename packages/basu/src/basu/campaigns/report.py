@@ -25,7 +25,7 @@ from basu.output.report.scenarios.drawing.picture import case_drawing
 from basu.output.report.scenarios.matrix_documents import read_case
 from basu.output.report.scenarios.page.route_section import card_style
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
-from basu.output.report.scenarios.sweep.study import LEAST_CASES, Axis, Study
+from basu.output.report.scenarios.sweep.study import LEAST_CASES, Study, axis_of
 from basu.output.report.scenarios.sweep.success_map import drawing
 from basu.output.report.scenarios.tally import counted
 from basu.output.report.streets import bounds_of
@@ -152,7 +152,7 @@ def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterato
 
 
 def _made_with(document: dict[str, Any]) -> str:
-    """File and versions."""
+    """Return the campaign's file and the versions that drove it."""
     identity = document["identity"]
     versions = [
         f"{name.removeprefix('the version of ')} {text}" for name, text in identity.items() if "version" in name
@@ -182,7 +182,7 @@ def _study(subject: str, agent: str, rows: pa.Table) -> Study | None:
         if name.startswith(PARAMETER) or name == "weather":
             values = rows[name].to_pylist()
             if None not in values and len(set(values)) > 1:
-                axes.append(_axis(name.removeprefix(PARAMETER), values))
+                axes.append(axis_of(name.removeprefix(PARAMETER), "", "", values))
     if not axes:
         return None
     failed = ~np.array(rows["success"].to_pylist(), dtype=np.bool_)
@@ -198,15 +198,6 @@ def _study(subject: str, agent: str, rows: pa.Table) -> Study | None:
         unjudged=0,
         absent=0,
     )
-
-
-def _axis(name: str, values: list[float | str]) -> Axis:
-    """A parameter's values as numbers."""
-    if not any(isinstance(value, str) for value in values):
-        return Axis(name, "", "", np.array(values, dtype=np.float64), ())
-    options = tuple(sorted({str(value) for value in values}))
-    numbers = {option: float(number) for number, option in enumerate(options)}
-    return Axis(name, "", "", np.array([numbers[str(value)] for value in values]), options)
 
 
 def _shown(studies: list[Study]) -> list[dict[str, Any]]:

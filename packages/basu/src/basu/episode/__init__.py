@@ -2,12 +2,12 @@
 
 from basu.episode.episode import Episode
 from basu.episode.spec import EpisodeSpec, case_spec
-from basu.episode.vehicle_under_test import Answer, Driver, Observation, VehicleUnderTest, seed_of
+from basu.episode.vehicle_under_test import DriverResponse, DriverSetup, Observation, VehicleUnderTest, seed_of
 from basu.episode.world import Town, Towns
 
 __all__ = [
-    "Answer",
-    "Driver",
+    "DriverResponse",
+    "DriverSetup",
     "Episode",
     "EpisodeSpec",
     "Observation",

@@ -15,7 +15,7 @@ import carla
 
 from basu import plugins
 from basu.episode.failures import outcome_of
-from basu.episode.vehicle_under_test import Driver, VehicleUnderTest, seed_of
+from basu.episode.vehicle_under_test import DriverSetup, VehicleUnderTest, seed_of
 from basu.episode.world import Towns, asking, next_snapshot, settle, spawned_at_start, ticked_by_us
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.managers.base_manager import BaseManager, CoSimulation, Run, WorldChanges
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
     from basu.conditions import Sumo
     from basu.episode.spec import EpisodeSpec
-    from basu.episode.vehicle_under_test import Answer
+    from basu.episode.vehicle_under_test import DriverResponse
     from basu.episode.world import Town
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.scenario_manager import Playing
@@ -60,7 +60,7 @@ class Ground(NamedTuple):
 class _Placed(NamedTuple):
     """A vehicle that stands at the start of its route."""
 
-    driver: Driver
+    driver: DriverSetup
     config: AgentConfig
     route: Route
     actor: carla.Vehicle
@@ -85,7 +85,7 @@ class Episode:
         spec: EpisodeSpec,
         *,
         towns: Towns | None = None,
-        drivers: Sequence[Driver] = (Driver(),),
+        drivers: Sequence[DriverSetup] = (DriverSetup(),),
         folder: Path = Path(),
     ) -> None:
         """Describe an episode with a vehicle under test for each driver; the simulator gets no call yet.
@@ -246,7 +246,7 @@ class Episode:
         """The vehicles that drive: those without an outcome."""
         return [vehicle for vehicle in self.vehicles if vehicle.outcome is None]
 
-    def step(self, answers: Sequence[Answer | None]) -> None:
+    def step(self, answers: Sequence[DriverResponse | None]) -> None:
         """Record the current frame with the answers, apply the controls, and let the simulator make the next frame.
 
         ``answers`` has one for each vehicle that waits for it, in the order of ``vehicles``; None for the others. An
@@ -274,7 +274,7 @@ class Episode:
                 self._send_away(vehicle)
         self._observe()
 
-    def _take(self, vehicle: VehicleUnderTest, answer: Answer | None, scenarios: ScenarioManager) -> None:
+    def _take(self, vehicle: VehicleUnderTest, answer: DriverResponse | None, scenarios: ScenarioManager) -> None:
         """Take an answer of one vehicle, and judge whether its drive is over.
 
         Raises:

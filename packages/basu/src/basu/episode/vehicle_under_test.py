@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Driver:
+class DriverSetup:
     """What drives one vehicle under test and what watches it.
 
     ``sensors`` makes the sensors for one drive.
@@ -75,7 +75,7 @@ class Observation(NamedTuple):
     in_lane: bool  # whether place and direction are those of the route
 
 
-class Answer(NamedTuple):
+class DriverResponse(NamedTuple):
     """What a driver answers to an observation."""
 
     control: carla.VehicleControl
@@ -95,7 +95,7 @@ class VehicleUnderTest:
         agent_error: what the agent failed with.
     """
 
-    def __init__(self, driver: Driver, run: Run, spec: EpisodeSpec, remove: Callable[[], None]) -> None:
+    def __init__(self, driver: DriverSetup, run: Run, spec: EpisodeSpec, remove: Callable[[], None]) -> None:
         """Describe a vehicle that stands at its start; ``remove`` takes it out of the world."""
         self._driver, self.run, self._remove = driver, run, remove
         self._state = DriverState()
@@ -177,7 +177,7 @@ class VehicleUnderTest:
         )
         self._is_recorded = False
 
-    def take(self, answer: Answer) -> None:
+    def take(self, answer: DriverResponse) -> None:
         """Record the frame of the observation with its answer, and show it.
 
         Raises:

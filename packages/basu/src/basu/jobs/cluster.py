@@ -25,7 +25,7 @@ except ImportError as error:
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.jobs.job import Answer
+    from basu.jobs.job import PlayerAnswer
 
 AUTO = "auto"
 CONNECT_S = 5.0  # of wall time for the address to answer
@@ -35,7 +35,7 @@ VERSIONS_S = 60.0  # of wall time for every node to say its versions
 class _Remote:
     """The actor: a player, and the jobs that it plays."""
 
-    def open(self, spec: PlayerSpec) -> Answer:
+    def open(self, spec: PlayerSpec) -> PlayerAnswer:
         """Open the player, which stays open until the actor ends."""
         self._stack = contextlib.ExitStack()
         try:
@@ -64,11 +64,11 @@ class ActorWorker:
         """Send a job's data."""
         self.owed = self._actor.play.remote(data)
 
-    def answer(self) -> Answer:
+    def answer(self) -> PlayerAnswer:
         """The answer, which has come."""
         owed, self.owed = self.owed, None
         try:
-            answer: Answer = ray.get(owed)
+            answer: PlayerAnswer = ray.get(owed)
         except RayActorError as error:
             return Died(f"its actor or its node ended ({_first_line(error)})")
         except RayError as error:  # what the player raised is a bug of ours; Ray's text has its traceback
@@ -107,7 +107,7 @@ class RayBackend:
         """Start an actor; Ray makes it when a node has a processor left."""
         return ActorWorker(self._spec)
 
-    def answers(self, workers: Sequence[ActorWorker], timeout_s: float) -> list[tuple[ActorWorker, Answer]]:
+    def answers(self, workers: Sequence[ActorWorker], timeout_s: float) -> list[tuple[ActorWorker, PlayerAnswer]]:
         """Wait until some have answered."""
         by_reference = {worker.owed: worker for worker in workers if worker.owed is not None}
         if not by_reference:

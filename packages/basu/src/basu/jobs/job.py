@@ -88,7 +88,7 @@ class Died(NamedTuple):
     sentence: str
 
 
-Answer = Ready | JobOutcome | Refused | Died
+PlayerAnswer = Ready | JobOutcome | Refused | Died
 
 
 def versions() -> dict[str, str]:

@@ -12,7 +12,7 @@ from basu.jobs.job import After, Died, Done, Job, JobOutcome, Lost, Ready, Refus
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence
 
-    from basu.jobs.job import Answer
+    from basu.jobs.job import PlayerAnswer
 
 ATTEMPTS = 3  # at a job before it counts as lost
 STARTS = 3  # of workers in a row that end before they are ready
@@ -38,7 +38,7 @@ class Backend(Protocol[W]):
     def start(self) -> W:
         """Start a worker, which answers `Ready` as its first."""
 
-    def answers(self, workers: Sequence[W], timeout_s: float) -> list[tuple[W, Answer]]:
+    def answers(self, workers: Sequence[W], timeout_s: float) -> list[tuple[W, PlayerAnswer]]:
         """Wait until some of ``workers`` have answered, at most ``timeout_s`` of wall time."""
 
     def close(self) -> None:
@@ -115,7 +115,7 @@ class Pool(Generic[W]):
         self._workers[worker] = _Duty(job, attempt, self._limit_s)
         worker.give(job.data)
 
-    def _take(self, worker: W, answer: Answer) -> Iterator[Done | Lost]:
+    def _take(self, worker: W, answer: PlayerAnswer) -> Iterator[Done | Lost]:
         """Act on an answer.
 
         Raises:

@@ -21,7 +21,7 @@ from basu.parent_end import end_with_parent
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.jobs.job import Answer
+    from basu.jobs.job import PlayerAnswer
 
 END_LIMIT_S = 10.0  # of wall time for a worker to end by itself
 
@@ -46,10 +46,10 @@ class ProcessWorker:
         """Send a job's data."""
         self._send((data,))
 
-    def answer(self) -> Answer:
+    def answer(self) -> PlayerAnswer:
         """The next answer, which has come."""
         try:
-            answer: Answer = self.connection.recv()
+            answer: PlayerAnswer = self.connection.recv()
         except (EOFError, OSError):
             self.end(at_once=False)
             return Died(f"its process ended with exit status {self.process.returncode}")
@@ -82,13 +82,13 @@ class Processes:
         """Start a process."""
         return ProcessWorker(self._spec)
 
-    def answers(self, workers: Sequence[ProcessWorker], timeout_s: float) -> list[tuple[ProcessWorker, Answer]]:
+    def answers(self, workers: Sequence[ProcessWorker], timeout_s: float) -> list[tuple[ProcessWorker, PlayerAnswer]]:
         """Wait until some have answered."""
         by_connection: dict[Any, ProcessWorker] = {worker.connection: worker for worker in workers}
         return [(by_connection[each], by_connection[each].answer()) for each in wait(list(by_connection), timeout_s)]
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing, because the workers hold nothing open."""
 
 
 def worker_command(descriptor: int, parent: int) -> list[str]:

@@ -121,14 +121,14 @@ class AgentsManager(BaseManager):
             return ()
         return self.admitted(self._agent.sensor_set() or (), f"sensors() of {self._agent.name}")
 
-    def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
+    def open_sensor_streams(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Take the sensors that were spawned for the agent; whether its process listens to them itself."""
         self._passage.add_sensors(sensors)
-        return self._agent.hear(sensors)
+        return self._agent.open_sensor_streams(sensors)
 
-    def stop_hearing(self) -> None:
+    def close_sensor_streams(self) -> None:
         """Stop listening; the sensors are about to be destroyed."""
-        self._agent.stop_hearing()
+        self._agent.close_sensor_streams()
 
     def setup(self, run: Run) -> None:
         """Bind the agent to its run and let it get ready."""

@@ -166,7 +166,7 @@ class MetricsManager(BaseManager):
             self._events.append((server_frame, record))
 
     def _hear_collision(self, event: carla.CollisionEvent) -> None:
-        """A frame of contact."""
+        """Record one frame of a contact, once the tick of its frame is known."""
         other_id, other_type = event.other_actor.id, event.other_actor.type_id
         impulse_ns = (event.normal_impulse.x, event.normal_impulse.y, event.normal_impulse.z)
 
@@ -178,7 +178,7 @@ class MetricsManager(BaseManager):
         self._later(event.frame, record)
 
     def _hear_lane_invasion(self, event: carla.LaneInvasionEvent) -> None:
-        """A marking crossed."""
+        """Record the markings that the vehicle crossed, once the tick of their frame is known."""
         markings = tuple(sorted(f"{marking.type}/{marking.color}" for marking in event.crossed_lane_markings))
 
         def record(tick: int) -> None:

@@ -93,7 +93,7 @@ class RoutesManager(BaseManager):
             self._set_weather(100.0 * self.progress.s_m / self._route.length_m)
 
     def close(self) -> None:
-        """Nothing was taken."""
+        """Do nothing, because the manager took nothing."""
 
     def _set_weather(self, percent: float) -> None:
         """Set the weather that the route file has so far along the way."""

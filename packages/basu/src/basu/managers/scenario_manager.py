@@ -238,7 +238,7 @@ class ScenarioManager(BaseManager):
         call_scenario(name, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
-        """One frame of one scenario."""
+        """Play one frame of one scenario."""
         stage, root = playing.stage, playing.composed.root.root  # without visitors, which no tree has
         stage.look(frame)
         if not playing.things and frame.tick > (playing.armed_tick or 0):  # a new actor is in no frame yet
@@ -278,7 +278,7 @@ class ScenarioManager(BaseManager):
         return None
 
     def _since_s(self, playing: Playing, tick: int) -> float:
-        """Since it was armed."""
+        """Return the time since the scenario was armed, in s."""
         return (tick - (playing.armed_tick or 0)) * self._step_s
 
     def _end(self, playing: Playing, tick: int | None) -> None:

@@ -83,7 +83,7 @@ class SensorsManager(BaseManager):
         self._timeout_s = run.timeout_s
         self._streams = SensorStreams(run.timeout_s)
         sensors = [self._spawned(spec, _blueprint(library, spec, run), run) for spec in self._specs]
-        elsewhere = self._listener is not None and self._listener.hear(sensors)
+        elsewhere = self._listener is not None and self._listener.open_sensor_streams(sensors)
         if elsewhere and not self._is_watched:
             return
         for spec, sensor, actor in zip(self._specs, sensors, self._actors, strict=True):
@@ -104,7 +104,7 @@ class SensorsManager(BaseManager):
         self._is_stopped = True
         try:
             if self._listener is not None and self._actors:
-                self._listener.stop_hearing()
+                self._listener.close_sensor_streams()
         finally:
             self._streams.stop()
 

@@ -136,7 +136,7 @@ class Collisions(Metric):
     }
 
     def compute(self, drive: Drive) -> dict[str, int]:
-        """The two numbers."""
+        """Return the number of contacts, and of those by the vehicle's own fault."""
         found = [blame.at_fault for _, blame in responsibilities(drive.history)]
         return {"number": len(found), "at_fault": sum(found)}
 
@@ -145,7 +145,7 @@ class Collisions(Metric):
         return CollisionsSoFar()
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
-        """Each contact."""
+        """Return the evidence of each contact."""
         return collisions(drive.history)
 
     def lines(self, result: JudgedRun) -> list[str]:

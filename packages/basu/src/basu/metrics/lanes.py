@@ -258,7 +258,7 @@ class WrongWay(Metric):
     schema = share_record("driven against the lane's direction")
 
     def compute(self, drive: Drive) -> dict[str, Any]:
-        """Way, share, time and stretches."""
+        """Return way, share, time and stretches against the lane's direction."""
         return share_row(wrong_way(drive.history))
 
     def lines(self, result: JudgedRun) -> list[str]:

@@ -195,7 +195,7 @@ class RedLights(Metric):
         return red_lights(drive.history)
 
     def lines(self, result: JudgedRun) -> list[str]:
-        """How many were run."""
+        """Return a line with the number of traffic lights that were run on red."""
         lights = result.metrics[self.name]
         run = sum(light["run"] for light in lights)
         return [f"traffic lights    {run} of {len(lights)} run on red"] if lights else []

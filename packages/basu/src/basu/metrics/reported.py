@@ -59,7 +59,7 @@ class Reported(Metric):
     )
 
     def compute(self, drive: Drive) -> dict[str, Any]:
-        """The figures."""
+        """Return the figures that the route reports."""
         frames, invasions, path = drive.history.frames, lane_invasions(drive.history), path_following(drive.history)
         return {
             "driven_m": path.driven_m,
@@ -73,7 +73,7 @@ class Reported(Metric):
         }
 
     def lines(self, result: JudgedRun) -> list[str]:
-        """Lane invasions and the way."""
+        """Return a line with the lane invasions and the way."""
         found = result.metrics[self.name]
         lanes = found["lane_invasions"]
         way = f"{found['driven_m'] / 1000.0:.3f} km of {found['planned_m'] / 1000.0:.3f} km"
@@ -132,7 +132,7 @@ class ServiceStops(Metric):
         return rows
 
     def lines(self, result: JudgedRun) -> list[str]:
-        """How many were served."""
+        """Return a line with the number of stops that were served."""
         stops = result.metrics[self.name]
         served = sum(stop["served"] for stop in stops)
         return [f"service stops     {served} of {len(stops)} served"] if stops else []

@@ -149,7 +149,7 @@ class Result:
         return sorted(rows, key=lambda row: (row["t_s"], row["kind"]))
 
     def document(self) -> dict[str, Any]:
-        """``result.json``."""
+        """Return the result as the document ``result.json``."""
         document = {
             "schema_version": SCHEMA_VERSION,
             "status": self.outcome.status.value,

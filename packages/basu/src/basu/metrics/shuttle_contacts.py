@@ -26,7 +26,7 @@ class Recorded(NamedTuple):
     others: Mapping[int, int]  # the other vehicle's place in the run, and the number that this record gives it
 
 
-class Contact(NamedTuple):
+class ShuttleContact(NamedTuple):
     """One contact of two vehicles under test."""
 
     tick: int  # of its first frame
@@ -34,7 +34,7 @@ class Contact(NamedTuple):
     blames: tuple[Responsibility | None, Responsibility | None]  # in this order; None where the drive was over before
 
 
-def contacts_between(records: Sequence[Recorded]) -> list[Contact]:
+def contacts_between(records: Sequence[Recorded]) -> list[ShuttleContact]:
     """Return the contacts of all pairs, the earliest first; the places in the run count from 0.
 
     Ticks count from the first frame of the run, which all its records share.
@@ -44,7 +44,7 @@ def contacts_between(records: Sequence[Recorded]) -> list[Contact]:
     return sorted(found, key=lambda contact: (contact.tick, contact.pair))
 
 
-def _of_pair(records: Sequence[Recorded], pair: tuple[int, int]) -> Iterator[Contact]:
+def _of_pair(records: Sequence[Recorded], pair: tuple[int, int]) -> Iterator[ShuttleContact]:
     """Yield the contacts of two vehicles."""
     one, other = pair
     events = (_events(records[one], other), _events(records[other], one))
@@ -56,7 +56,7 @@ def _of_pair(records: Sequence[Recorded], pair: tuple[int, int]) -> Iterator[Con
                 _blame(records[place].history, [event for event in side if contact[0] <= event.tick <= contact[-1]])
                 for place, side in zip(pair, events, strict=True)
             )
-            yield Contact(contact[0], pair, (first, second))
+            yield ShuttleContact(contact[0], pair, (first, second))
             contact = []
         if tick is not None:
             contact.append(tick)

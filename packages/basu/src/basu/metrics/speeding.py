@@ -178,7 +178,7 @@ class Speeding(Metric):
     penalties: ClassVar[dict[str, float]] = {Infraction.SPEEDING.value: DEFAULT_PENALTIES[Infraction.SPEEDING]}
 
     def compute(self, drive: Drive) -> dict[str, float]:
-        """Time and excess."""
+        """Return the time above the limit and the largest excess."""
         excess_mps = drive.history.speed_mps() - limits_mps(drive.history)
         beyond = excess_mps > drive.scoring.speeding_tolerance_mps
         return {
@@ -204,6 +204,6 @@ class Speeding(Metric):
         ]
 
     def columns(self, result: JudgedRun) -> list[Column]:
-        """The number of infractions."""
+        """Return the number of infractions."""
         number_found = sum(found.kind is Infraction.SPEEDING for found in result.infractions)
         return [Column("speeding", str(number_found))]

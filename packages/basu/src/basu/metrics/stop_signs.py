@@ -187,5 +187,5 @@ class StopSigns(Metric):
         ]
 
     def columns(self, result: JudgedRun) -> list[Column]:
-        """How many were run."""
+        """Return the number of stop signs that were run."""
         return [Column("stop signs", str(sum(not sign["stopped"] for sign in result.metrics[self.name])))]

@@ -57,7 +57,7 @@ class ProgressBar(BaseManager):
         self._began_s = time.perf_counter()
 
     def tick(self, frame: Frame) -> None:
-        """Once a frame."""
+        """Move the progress bar by one frame."""
         if frame.tick % UPDATE_TICKS or self._bar is None:
             return
         if frame.tick and frame.tick % SCORE_TICKS == 0:

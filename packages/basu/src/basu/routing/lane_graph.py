@@ -55,7 +55,7 @@ def read_roads(opendrive: str) -> dict[int, Road]:
 
 
 def _road(element: etree._Element) -> Road:
-    """One <road>."""
+    """Read one ``<road>`` of an OpenDRIVE file."""
     posted = sorted((s, _limit_mps(e.find("speed"))) for s, e in _places(element.iterfind("type")))
     return Road(
         length_m=float(element.get("length", "0")),

@@ -144,7 +144,7 @@ class Progress(NamedTuple):
 
     @staticmethod
     def at_start() -> Progress:
-        """Before the first advance."""
+        """Return the progress before the first advance: 0 m."""
         return Progress(0.0, 0.0, 0.0)
 
 

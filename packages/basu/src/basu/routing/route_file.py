@@ -139,7 +139,7 @@ def _included(path: Path, element: etree._Element, chain: tuple[Path, ...]) -> P
 
 
 def _description(element: etree._Element, path: Path) -> RouteDescription:
-    """One <route>."""
+    """Read one ``<route>`` of a route file."""
     identity, town = element.get("id"), element.get("town")
     if identity is None or town is None:
         missing = "id" if identity is None else "town"

@@ -110,7 +110,7 @@ def timetable_from_json(document: dict[str, Any]) -> Timetable:
 
 
 def timetable_to_json(timetable: Timetable) -> dict[str, Any]:
-    """As in a file."""
+    """Return a timetable as a file has it."""
     return {
         "schema_version": SCHEMA_VERSION,
         "round": _written(timetable.round_s),
@@ -128,7 +128,7 @@ def timetable_to_json(timetable: Timetable) -> dict[str, Any]:
 
 
 def _check(timetable: Timetable) -> None:
-    """What cannot be meant."""
+    """Refuse a timetable that contradicts itself."""
     if timetable.headway_s <= 0.0:
         raise ValueError("the headway is 0; it is the time from one vehicle to the next")
     latest_s = 0.0
@@ -147,7 +147,7 @@ def _check(timetable: Timetable) -> None:
 
 
 def _hours(entry: dict[str, Any]) -> Hours:
-    """One stretch of service."""
+    """Read one stretch of service."""
     from_s, to_s = (60.0 * _minutes(entry[key], f"'{key}' of the service") for key in ("from", "to"))
     if to_s <= from_s:
         raise ValueError(f"a stretch of service goes from {entry['from']} to {entry['to']}, which is not later")
@@ -155,7 +155,7 @@ def _hours(entry: dict[str, Any]) -> Hours:
 
 
 def _days(given: object) -> Iterable[str]:
-    """Names of days."""
+    """Read the names of days."""
     if not isinstance(given, list) or not given:
         raise TypeError(f"'days' is {given!r}; write a list such as ['Mon', 'Tue']")
     return [_day(day) for day in given]

@@ -82,7 +82,7 @@ def weather_at(marks: Sequence[WeatherMark], percent: float) -> Mapping[str, flo
 
 
 def _mark(element: etree._Element, path: Path) -> WeatherMark:
-    """One ``<weather>``."""
+    """Read one ``<weather>`` of a route."""
     where = f"route file {path}, line {element.sourceline}: <weather>"
     given = {}
     for name, text in ((str(key), str(value)) for key, value in element.attrib.items()):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import traceback
 from typing import TYPE_CHECKING
 
-from basu.episode import Driver, Episode
+from basu.episode import DriverSetup, Episode
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.output.progress import ProgressBar
@@ -56,12 +56,12 @@ class AgentDrive:
         self._recording: RecordingManager | None = None
         self.episode = Episode(simulator, spec, towns=towns, drivers=[self._driver(shuttle) for shuttle in shuttles])
 
-    def _driver(self, shuttle: Shuttle) -> Driver:
+    def _driver(self, shuttle: Shuttle) -> DriverSetup:
         """Return what drives and watches one vehicle; outputs show the first."""
         agents, is_first = shuttle.agents, shuttle is self._shuttles[0]
         is_watched = is_first and (self._options.shows_sensors or agents.person is not None)
         operator = shuttle.operator
-        return Driver(
+        return DriverSetup(
             role=shuttle.role,
             start_m=shuttle.start_m,
             config=agents.config,

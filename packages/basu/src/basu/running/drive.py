@@ -7,7 +7,7 @@ import traceback
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.episode import Answer
+from basu.episode import DriverResponse
 from basu.errors import AgentError
 from basu.metrics.result import judge
 from basu.metrics.success import Success
@@ -89,12 +89,12 @@ def drive(episode: Episode, agents: Sequence[AgentsManager]) -> list[Driven]:
     return [_driven(vehicle, ended_s.get(vehicle, now_s) - began_s) for vehicle in episode.vehicles]
 
 
-def _answers(episode: Episode, agents: Sequence[AgentsManager]) -> list[Answer | None]:
+def _answers(episode: Episode, agents: Sequence[AgentsManager]) -> list[DriverResponse | None]:
     """Ask the agents of all vehicles that wait, then collect their answers; an agent that fails ends its own drive.
 
     Agents with processes of their own work at the same time: the slowest of them says how long this takes.
     """
-    answers: list[Answer | None] = [None] * len(agents)
+    answers: list[DriverResponse | None] = [None] * len(agents)
     asked = []
     for number, (vehicle, manager) in enumerate(zip(episode.vehicles, agents, strict=True)):
         if vehicle.waits:
@@ -108,7 +108,7 @@ def _answers(episode: Episode, agents: Sequence[AgentsManager]) -> list[Answer |
     for number, vehicle, manager in asked:
         try:
             manager.answer(vehicle.observation.frame)
-            answers[number] = Answer(manager.control, manager.requested, manager.manual)
+            answers[number] = DriverResponse(manager.control, manager.requested, manager.manual)
         except AgentError as error:  # noqa: PERF203 - once a vehicle
             episode.fail(error, vehicle)
     return answers

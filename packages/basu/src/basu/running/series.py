@@ -99,7 +99,7 @@ class Series(Batch):
         write_bytes(self.folder / SERIES_TEXT, f"{self.table()}\n".encode())
 
     def table(self) -> str:
-        """The totals as text."""
+        """Return the totals as text."""
         return series_table(self.folder.name, self._document)
 
     def worst(self, required: Mapping[str, float]) -> int:

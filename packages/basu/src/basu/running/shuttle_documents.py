@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from basu.episode import VehicleUnderTest
     from basu.metrics.result import Result
-    from basu.metrics.shuttle_contacts import Contact
+    from basu.metrics.shuttle_contacts import ShuttleContact
     from basu.running.shuttles import Shuttle
 
 
@@ -85,7 +85,7 @@ def _shuttle(shuttle: Shuttle, result: Result, others: Mapping[int, int]) -> dic
     }
 
 
-def _contact(contact: Contact, records: Sequence[Recorded]) -> dict[str, Any]:
+def _contact(contact: ShuttleContact, records: Sequence[Recorded]) -> dict[str, Any]:
     """Return a contact with the judgement for each vehicle."""
     step_s = next(record.history.facts.step_s for record in records if record.history is not None)
     return {

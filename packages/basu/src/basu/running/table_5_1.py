@@ -109,7 +109,7 @@ def lines(printed: Mapping[str, Printed], ours: Mapping[str, Measured]) -> list[
 
 
 def text(printed: Mapping[str, Printed], ours: Mapping[str, Measured]) -> str:
-    """For a console."""
+    """Return the table as text for a console."""
     found = [HEADS, *lines(printed, ours)]
     widths = [max(len(line[column]) for line in found) for column in range(len(HEADS))]
     written = [

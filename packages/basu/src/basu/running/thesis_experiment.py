@@ -68,7 +68,7 @@ def differences(printed: Mapping[str, Printed], ours: Mapping[str, Measured], ke
 
 
 def _score(theirs: Printed, row: Measured) -> str:
-    """Both scores."""
+    """Return the driving score beside that of the thesis, as text."""
     apart = row.driving - theirs.driving
     if abs(apart) < SMALL:
         return f"driving score {row.driving:.3f} as in the thesis"

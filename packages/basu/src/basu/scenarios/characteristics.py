@@ -3,7 +3,7 @@
 Atmosphere, lighting and surface follow from the case's weather. The partner, which a driver has to see to pass, follows
 from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class, or
 stated by the case: ``<characteristics alignment="curve" obstruction="vehicle"/>``. What they state of the place and of
-the others is compared with the map and with rehearsals of all cases (`basu.scenarios.road_there`, a test). A played
+the others is compared with the map and with rehearsals of all cases by a test. A played
 case also has figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no
 meaning here.
 """
@@ -100,7 +100,7 @@ class Highway(enum.Enum):
     YES = "yes"
 
 
-class Speeding(enum.Enum):
+class OtherSpeeding(enum.Enum):
     """Whether another vehicle is more than 1 m/s faster than the posted limit."""
 
     NO = "no"
@@ -132,7 +132,7 @@ class Characteristics:
     obstruction: Obstruction = Obstruction.NONE
     partner: Partner = Partner.VEHICLE
     highway: Highway = Highway.NO
-    speeding: Speeding = Speeding.NO
+    speeding: OtherSpeeding = OtherSpeeding.NO
     violation: Violation = Violation.NONE
 
     def among(self, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:

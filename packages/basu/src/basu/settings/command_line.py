@@ -106,7 +106,7 @@ def default_text(field: Field) -> str:
 
 
 def _add(group: argparse._ArgumentGroup, field: Field) -> None:
-    """One option."""
+    """Add one option to the parser."""
     form, option = form_of(field), field.option
     shown: dict[str, Any] = {"help": described(field).replace("%", "%%"), "default": None}
     if field.metavar is not None:

@@ -2,14 +2,14 @@
 
 import pytest
 
-from basu.metrics.careful_driver.counterfactual import Answer, answers
+from basu.metrics.careful_driver.counterfactual import ModelOutcome, answers
 from basu.metrics.careful_driver.encounters import encounters
-from basu.metrics.careful_driver.standard_grid import MODELS
+from basu.metrics.careful_driver.metric import MODELS
 from basu.records.history import History
 from fakes.lane_conflicts import LANE_M, braking, cut_in, meeting, sideways, steady
 
 
-def of_contact(history: History) -> dict[str, Answer]:
+def of_contact(history: History) -> dict[str, ModelOutcome]:
     (found,) = (each for each in encounters(history) if each.is_contact)
     return {answer.model: answer for answer in answers(history, found, MODELS)}
 

@@ -3,13 +3,13 @@
 import pytest
 
 import fakes.encounters as contacts_of_fault
-from basu.metrics.careful_driver.encounters import Encounter, encounters
+from basu.metrics.careful_driver.encounters import VehicleEncounter, encounters
 from basu.metrics.careful_driver.model import Situation
 from basu.records.history import History
 from fakes.lane_conflicts import LANE_M, braking, cut_in, meeting, sideways, steady
 
 
-def only(history: History) -> Encounter:
+def only(history: History) -> VehicleEncounter:
     (found,) = (each for each in encounters(history) if each.is_contact)
     return found
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from basu.metrics.careful_driver.grids_ahead import FRONT_M, cut_out_contacts, deceleration_contacts
+from basu.metrics.careful_driver.metric import MODELS
 from basu.metrics.careful_driver.model import CarefulDriver
-from basu.metrics.careful_driver.standard_grid import MODELS
+from grids_ahead import FRONT_M, cut_out_contacts, deceleration_contacts
 
 PAGE = Path(__file__).parents[5] / "docs" / "reference" / "careful-drivers.md"
 COMPARED = [model for model in MODELS if model.name != "Reg157"]

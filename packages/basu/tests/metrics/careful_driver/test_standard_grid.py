@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from basu.metrics.careful_driver.metric import MODELS
 from basu.metrics.careful_driver.model import CarefulDriver
-from basu.metrics.careful_driver.standard_grid import (
+from standard_grid import (
     GAPS_M,
     LATERAL_MPS,
-    MODELS,
     by_speeds,
     cases,
     contacts,

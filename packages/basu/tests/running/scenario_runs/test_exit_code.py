@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from basu.running.scenario_runs.command import worst
-from basu.scenarios.suites.checks import Answer, answer_of
+from basu.scenarios.suites.checks import RequirementAnswer, answer_of
 
 
 def document(verdict: str, fault: str = "none", *, completed: bool = True) -> dict[str, Any]:
@@ -41,5 +41,5 @@ def test_a_requirement_that_is_held_with_a_near_miss_still_ends_a_suite_with_1()
         "judgements": [{"criterion": "no collision", "passed": True, "sentence": "nothing was touched"}],
     }
     found = answer_of({"kind": "no contact"}, {"case": near_miss})
-    assert found.answer is Answer.HELD
+    assert found.answer is RequirementAnswer.HELD
     assert worst(iter([document("SUCCESS"), near_miss])) == 1

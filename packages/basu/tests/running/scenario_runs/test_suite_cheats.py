@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from basu.cli import main
-from basu.scenarios.suites.checks import Answer, CaseAnswer, answer_of
+from basu.scenarios.suites.checks import CaseAnswer, RequirementAnswer, answer_of
 from servers import RunningServer
 
 AGENTS = '''
@@ -78,7 +78,7 @@ def answers(simulator: RunningServer, folder: Path, driver: str, *cases: str) ->
 def test_a_driver_that_evades_along_the_pavement_meets_nothing(simulator: RunningServer, tmp_path: Path) -> None:
     """The driver touches no actor and reaches its goal. It has left its route, so its drive is not completed."""
     found = answers(simulator, tmp_path, "Pavement", "dog_on_the_road_1")["dog_on_the_road_1"]
-    assert found.answer is not Answer.HELD
+    assert found.answer is not RequirementAnswer.HELD
     assert "left its route" in found.sentence
 
 
@@ -88,15 +88,15 @@ def test_a_driver_that_remembers_the_public_case_fails_with_other_values(
     """It passes the one and not the other, so a sweep of the suite's cases (`--sweep`) finds it."""
     known, other = "dog_on_the_road_1", "dog_on_the_road_1:ahead=45"
     found = answers(simulator, tmp_path, "Remembers", known, other)
-    assert found[known].answer is Answer.HELD
-    assert found[other].answer is Answer.BROKEN
+    assert found[known].answer is RequirementAnswer.HELD
+    assert found[other].answer is RequirementAnswer.BROKEN
 
 
 @pytest.mark.parametrize("case", ["cut_in_at_ttc_1", "pedestrian_crossing_1"])
 def test_a_driver_that_waits_until_the_conflict_goes_away_meets_nothing(
     simulator: RunningServer, tmp_path: Path, case: str
 ) -> None:
-    assert answers(simulator, tmp_path, "Waits", case)[case].answer is not Answer.HELD
+    assert answers(simulator, tmp_path, "Waits", case)[case].answer is not RequirementAnswer.HELD
 
 
 def result(**metres: float) -> dict[str, Any]:
@@ -114,12 +114,12 @@ def result(**metres: float) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("metres", "answer"),
     [
-        ({"sidewalk": 1.5}, Answer.BROKEN),
-        ({"off_road": 1.5}, Answer.BROKEN),
-        ({"off_road": 0.6, "sidewalk": 0.6}, Answer.BROKEN),
-        ({"sidewalk": 0.5}, Answer.HELD),
-        ({"wrong_lane": 20.0}, Answer.HELD),  # it goes round what stands in its lane
+        ({"sidewalk": 1.5}, RequirementAnswer.BROKEN),
+        ({"off_road": 1.5}, RequirementAnswer.BROKEN),
+        ({"off_road": 0.6, "sidewalk": 0.6}, RequirementAnswer.BROKEN),
+        ({"sidewalk": 0.5}, RequirementAnswer.HELD),
+        ({"wrong_lane": 20.0}, RequirementAnswer.HELD),  # it goes round what stands in its lane
     ],
 )
-def test_what_held_off_the_road_is_broken(metres: dict[str, float], answer: Answer) -> None:
+def test_what_held_off_the_road_is_broken(metres: dict[str, float], answer: RequirementAnswer) -> None:
     assert answer_of(NO_CONTACT, result(**metres)).answer is answer

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from basu.scenarios.cases import open_library
 from basu.scenarios.characteristics import Surface, Violation, characteristics_of
 from basu.scenarios.paths import Path
-from basu.scenarios.road_there import RoadThere, road_there
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO
 from basu.testing import careful, rehearse, steady
 from basu.testing.rehearsal import Driver, Rehearsal
+from road_there import RoadThere, road_there
 
 Laid = Callable[..., Scenario]
 LIBRARY = open_library()

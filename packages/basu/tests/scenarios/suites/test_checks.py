@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from basu.scenarios.suites.checks import Answer, answer_of
+from basu.scenarios.suites.checks import RequirementAnswer, answer_of
 
 NO_CONTACT = {"kind": "no contact"}
 
@@ -29,25 +29,27 @@ def encounter(*, avoids: bool) -> dict[str, Any]:
 
 @pytest.mark.parametrize("verdict", ["NOT_EXERCISED", "SETUP_FAULT", "SIMULATOR_FAULT", "INTERRUPTED"])
 def test_a_case_that_does_not_count_shows_nothing(verdict: str) -> None:
-    assert answer_of(NO_CONTACT, result(verdict)).answer is Answer.NOT_SHOWN
+    assert answer_of(NO_CONTACT, result(verdict)).answer is RequirementAnswer.NOT_SHOWN
 
 
 def test_a_driver_that_stands_for_ever_after_the_conflict_shows_nothing() -> None:
     found = answer_of(NO_CONTACT, result("FAILURE", completed=False))
-    assert found.answer is Answer.NOT_SHOWN
+    assert found.answer is RequirementAnswer.NOT_SHOWN
     assert "not completed" in found.sentence
 
 
 def test_a_contact_breaks_the_requirement_even_if_the_drive_was_not_completed() -> None:
-    assert answer_of(NO_CONTACT, result("FAILURE", touched=True, completed=False)).answer is Answer.BROKEN
+    assert answer_of(NO_CONTACT, result("FAILURE", touched=True, completed=False)).answer is RequirementAnswer.BROKEN
 
 
 def test_an_agent_that_broke_down_has_broken_it() -> None:
-    assert answer_of(NO_CONTACT, result("AGENT_FAULT")).answer is Answer.BROKEN
+    assert answer_of(NO_CONTACT, result("AGENT_FAULT")).answer is RequirementAnswer.BROKEN
 
 
-@pytest.mark.parametrize(("avoids", "answer"), [(True, Answer.BROKEN), (False, Answer.NOT_DEMANDED)])
-def test_a_contact_is_held_against_what_the_named_model_avoids(*, avoids: bool, answer: Answer) -> None:
+@pytest.mark.parametrize(
+    ("avoids", "answer"), [(True, RequirementAnswer.BROKEN), (False, RequirementAnswer.NOT_DEMANDED)]
+)
+def test_a_contact_is_held_against_what_the_named_model_avoids(*, avoids: bool, answer: RequirementAnswer) -> None:
     check = {"kind": "careful driver", "model": "FSM"}
     found = answer_of(check, result("FAILURE", touched=True, careful_drivers=encounter(avoids=avoids)))
     assert (found.answer, found.sentence) == (answer, "FSM says")
@@ -56,11 +58,11 @@ def test_a_contact_is_held_against_what_the_named_model_avoids(*, avoids: bool, 
 def test_the_silence_of_a_model_is_no_excuse() -> None:
     check = {"kind": "careful driver", "model": "RSS"}
     found = answer_of(check, result("FAILURE", touched=True, careful_drivers=encounter(avoids=False)))
-    assert found.answer is Answer.BROKEN
+    assert found.answer is RequirementAnswer.BROKEN
 
 
-@pytest.mark.parametrize(("felt", "answer"), [(2.4, Answer.HELD), (2.5, Answer.BROKEN)])
-def test_a_figure_is_held_against_its_limit(felt: float, answer: Answer) -> None:
+@pytest.mark.parametrize(("felt", "answer"), [(2.4, RequirementAnswer.HELD), (2.5, RequirementAnswer.BROKEN)])
+def test_a_figure_is_held_against_its_limit(felt: float, answer: RequirementAnswer) -> None:
     check = {"kind": "at most", "figure": "hardest braking", "limit": 2.4, "unit": "m/s²"}
     found = answer_of(check, result(passengers={"largest": {"braking_mps2": felt}}))
     assert found.answer is answer

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.maps.opendrive.evaluate.tables import Tables
-from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, RoadObject
+from linden.maps.opendrive.outlines import outline_of
+from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.records import PlacedSignal
 from linden.protocol.values.space import Transform
 from linden_maps.drawing.style import BUILDING, GREEN, INK, PAINT, RAILROAD, RED, SPAWN, YELLOW, group, points
@@ -25,7 +26,7 @@ def objects(tables: Tables) -> list[str]:
         for thing in road.objects:
             if len(thing.outline) < 3:
                 continue
-            outline = _outline(tables, index, thing)
+            outline = outline_of(tables, index, thing)
             shape = f'<polygon points="{points(outline)}"/>'
             if thing.is_crosswalk:
                 crosswalks.append(shape)
@@ -36,7 +37,7 @@ def objects(tables: Tables) -> list[str]:
             else:
                 others.append(shape)
             if is_building(thing) and " " in thing.name:
-                x, y = outline[:-1].mean(axis=0)
+                x, y = outline.mean(axis=0)
                 names.append(f'<text x="{x:.1f}" y="{y:.1f}">{escape(thing.name)}</text>')
     edge = f'stroke="{PAINT}" stroke-width="0.3"'
     return [
@@ -46,21 +47,6 @@ def objects(tables: Tables) -> list[str]:
         *group("lines", f'fill="{PAINT}"', lines),
         *group("places", f'fill="{INK}" font-size="{_PLACE_NAME_M}" text-anchor="middle"', names),
     ]
-
-
-def _outline(tables: Tables, road_index: int, thing: RoadObject) -> NDArray[np.float64]:
-    """Return an object's outline in CARLA's frame, (N, 2) in m."""
-    along_m = [corner.first_m if corner.is_along_road else thing.s_m for corner in thing.outline]
-    aside_m = np.array([corner.second_m if corner.is_along_road else thing.t_m for corner in thing.outline])
-    s_m = np.clip(along_m, 0.0, tables.road_length_m[road_index])
-    pose = tables.curves.pose(np.full(len(s_m), road_index), s_m)
-    x_m = pose.x_m - np.sin(pose.heading_rad) * aside_m
-    y_m = pose.y_m + np.cos(pose.heading_rad) * aside_m
-    local = np.array([(0.0, 0.0) if corner.is_along_road else corner[:2] for corner in thing.outline])
-    cos, sin = np.cos(pose.heading_rad + thing.heading_rad), np.sin(pose.heading_rad + thing.heading_rad)
-    x_m = x_m + cos * local[:, 0] - sin * local[:, 1]
-    y_m = y_m + sin * local[:, 0] + cos * local[:, 1]
-    return np.stack([x_m, -y_m], axis=1)
 
 
 def signals(placed: Sequence[PlacedSignal]) -> list[str]:

@@ -5,7 +5,7 @@ Source of what is written when: ``CarlaRecorder.cpp``; docs/reference/recorder.m
 """
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from linden.blueprints.library import BlueprintKind
 from linden.geometry import compose
 from linden.physics.columns import finite
 from linden.protocol.values.episode import LightState
-from linden.protocol.values.space import Transform
+from linden.protocol.values.space import Transform, Vector3D
 from linden.replay import frame_records as recorded_lamps
 from linden.replay import frame_records as rows_of
 from linden.replay.file import layouts
@@ -31,6 +31,7 @@ from linden.structured import StructuredArray
 log = logging.getLogger("linden")
 
 M_TO_CM = 100.0
+_SIGNALS = (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)
 _KINDS_OF_FILE = (
     BlueprintKind.OTHER,
     BlueprintKind.VEHICLE,
@@ -240,22 +241,18 @@ def _parents(come: list[ActorRecord]) -> StructuredArray:
 
 def _boxes(come: list[ActorRecord]) -> StructuredArray:
     """Return the local boxes of actors that came; signs have trigger volumes instead."""
-    found = [record for record in come if record.kind not in (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)]
-    boxes = np.zeros(len(found), layouts.BOX)
-    for place, record in enumerate(found):
-        boxes["id"][place] = record.id
-        boxes["origin_cm"][place] = np.array(record.box.location) * M_TO_CM
-        boxes["extent_cm"][place] = np.array(record.box.extent) * M_TO_CM
-    return boxes
+    return _rows((record, record.box.location) for record in come if record.kind not in _SIGNALS)
 
 
 def _trigger_volumes(episode: Episode, come: list[ActorRecord]) -> StructuredArray:
     """Return the trigger volumes, in the world, of lights and signs that came with the map."""
-    found = [record for record in come if record.kind in (BlueprintKind.TRAFFIC_LIGHT, BlueprintKind.TRAFFIC_SIGN)]
-    boxes = np.zeros(len(found), layouts.BOX)
-    for place, record in enumerate(found):
-        centre = compose(episode.transform(record.id), Transform(record.box.location, record.box.rotation))
-        boxes["id"][place] = record.id
-        boxes["origin_cm"][place] = np.array(centre.location) * M_TO_CM
-        boxes["extent_cm"][place] = np.array(record.box.extent) * M_TO_CM
-    return boxes
+    found = [record for record in come if record.kind in _SIGNALS]
+    boxes = [Transform(record.box.location, record.box.rotation) for record in found]
+    centres = [compose(episode.transform(record.id), box) for record, box in zip(found, boxes, strict=True)]
+    return _rows(zip(found, (centre.location for centre in centres), strict=True))
+
+
+def _rows(boxes: Iterable[tuple[ActorRecord, Vector3D]]) -> StructuredArray:
+    """Return the rows of actors' boxes with these middles."""
+    rows = [(one.id, np.array(middle) * M_TO_CM, np.array(one.box.extent) * M_TO_CM) for one, middle in boxes]
+    return np.array(rows, layouts.BOX)

@@ -72,7 +72,7 @@ class PatchFrames(NamedTuple):
     yaw_rad: F64  # (N,)
 
     def __len__(self) -> int:
-        """How many there are."""
+        """Return the number of patches."""
         return len(self.base_m)
 
     def world(self, points_m: ArrayLike) -> F64:

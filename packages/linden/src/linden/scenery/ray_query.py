@@ -44,7 +44,7 @@ class StandingBoxes(NamedTuple):
 
     @staticmethod
     def of(centre_m: F64, half_m: F64, yaw_rad: F64) -> "StandingBoxes":
-        """Sort boxes into bins."""
+        """Return boxes sorted into bins of the plane."""
         bins = bins_of(centre_m[:, :2], np.hypot(half_m[:, 0], half_m[:, 1]))
         centre_m, half_m, yaw_rad = map(np.ascontiguousarray, (centre_m, half_m, yaw_rad))
         return StandingBoxes(centre_m, half_m, yaw_rad, bins)

@@ -50,10 +50,10 @@ class ForwardAgent(AutonomousAgent):
     """Drives straight ahead until something stops it."""
 
     def setup(self) -> None:
-        """Nothing to get ready."""
+        """Do nothing, because this agent needs no preparation."""
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
-        """Full ahead, whatever the sensors say."""
+        """Return full throttle, whatever the sensors measure."""
         del sensor_data
         return carla.VehicleControl(throttle=THROTTLE)
 

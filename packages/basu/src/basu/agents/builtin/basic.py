@@ -107,16 +107,20 @@ def _control(command: DrivingCommand, facts: VehicleFacts, speed_mps: float) -> 
     )
 
 
+TEST_RUNS = {
+    "routes": "routes/linden_short.xml",
+    "sensors": "config/sensors.json",
+    "vehicle": "vehicle.tesla.model3",
+    "weather": "ClearSunset",
+}
+"""The route, sensors, car and weather of the thesis's test runs."""
+
+
 class HumanAgent(BasicAgent):
     """The driver while the person does not drive; BASU adds a person's input to agents of this class."""
 
     driven_by_person = True
 
     def config(self) -> dict[str, str]:
-        """The route, sensors, car and weather of the thesis's test runs."""
-        return {
-            "routes": "routes/linden_short.xml",
-            "sensors": "config/sensors.json",
-            "vehicle": "vehicle.tesla.model3",
-            "weather": "ClearSunset",
-        }
+        """Return the route, sensors, car and weather of the thesis's test runs."""
+        return dict(TEST_RUNS)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 import numpy as np
 
-from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.basic import TEST_RUNS, BasicAgent
 from basu.agents.builtin.driving.driver import SIGHT_M, BehavioralDriver
 from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL
 from basu.agents.builtin.driving.task import make_task
@@ -214,13 +214,8 @@ class DeviatingAgent(BehavioralAgent):
         return control
 
     def config(self) -> dict[str, str]:
-        """The route, car and weather of the thesis's test runs."""
-        return {
-            "routes": "routes/linden_short.xml",
-            "sensors": "config/sensors.json",
-            "vehicle": "vehicle.tesla.model3",
-            "weather": "ClearSunset",
-        }
+        """Return the route, car and weather of the thesis's test runs."""
+        return dict(TEST_RUNS)
 
     def _get_in(self, pose: carla.Transform) -> tuple[BehavioralDriver, VehicleFacts]:
         """Choose what to hit, too."""
@@ -235,7 +230,7 @@ class DeviatingAgent(BehavioralAgent):
         return driver, facts
 
     def _advance(self, ego: DrivenVehicle, driver: BehavioralDriver) -> None:
-        """From one phase to the next."""
+        """Go from one phase to the next when it is due."""
         assert self.deviation is not None
         assert driver.place is not None
         s_m = driver.place.s_m

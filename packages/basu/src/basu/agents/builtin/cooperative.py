@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.builtin.behavioral import BehavioralAgent
 from basu.agents.builtin.cooperation.headways import Headways
-from basu.agents.builtin.cooperation.stop_order import Standing, StopOrder, line_text
+from basu.agents.builtin.cooperation.stop_order import StopOrder, StoppedVehicle, line_text
 from basu.agents.builtin.cooperation.warnings import WarnedPeople, warnings_of
 from basu.agents.builtin.rules.right_of_way import StopPhase
 from basu.agents.builtin.rules.stopping_lines import ServicePhase, hold_at, is_resting_at
@@ -33,12 +33,12 @@ class CooperativeAgent(BehavioralAgent):
     """Drives as ``behavioral``; what it hears adds people to see, lines to wait at and time at service stops."""
 
     def setup(self) -> None:
-        """Hear nothing yet."""
+        """Begin a drive without messages from other vehicles."""
         super().setup()
         self.people, self.order = WarnedPeople(), StopOrder()
         self.headways = headways_of(self.seen_route)
         self._ticks = 0
-        self._standing: tuple[StopSign, Standing] | None = None
+        self._standing: tuple[StopSign, StoppedVehicle] | None = None
         self._held: set[int] = set()  # the service stops, by their place in the route, where the hold is decided
         self._left: set[int] = set()
 
@@ -105,7 +105,7 @@ class CooperativeAgent(BehavioralAgent):
 
     def _at_line(
         self, driver: BehavioralDriver, front_s_m: float, speed_mps: float, now_s: float
-    ) -> tuple[StopSign, Standing] | None:
+    ) -> tuple[StopSign, StoppedVehicle] | None:
         """Return the stop sign at which the vehicle stands or behind which it crosses; None elsewhere."""
         if self._standing is not None and front_s_m < self._standing[0].line_s_m + CROSSING_M:
             return self._standing
@@ -113,7 +113,7 @@ class CooperativeAgent(BehavioralAgent):
             if sign.phase is StopPhase.WAITING and is_resting_at(sign.line_s_m, front_s_m, speed_mps):
                 place = driver.task.path.index_at(sign.line_s_m)
                 x_m, y_m = float(driver.task.path.x_m[place]), float(driver.task.path.y_m[place])
-                return sign, Standing(x_m, y_m, now_s)
+                return sign, StoppedVehicle(x_m, y_m, now_s)
         return None
 
 

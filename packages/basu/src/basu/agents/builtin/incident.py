@@ -35,7 +35,7 @@ class IncidentAgent(BasicAgent):
     cruise_mps = CRUISE_MPS
 
     def setup(self) -> None:
-        """Nothing has happened yet."""
+        """Begin a drive before the incident."""
         super().setup()
         self._deviated = self._stopping = False
         self._rested = 0  # steps at rest since the stop began

@@ -357,6 +357,6 @@ def end_unused() -> None:
 
 @atexit.register
 def _kill_all() -> None:
-    """No agent outlives the benchmark."""
+    """Kill all agents' processes when the benchmark ends."""
     for process in list(_running):
         process.kill()

@@ -33,7 +33,7 @@ class AgentsEnd:
         self._socket = socket.socket(fileno=descriptor)
 
     def receive(self) -> Any:  # noqa: ANN401 - a request
-        """The next request.
+        """Return the benchmark's next request.
 
         Raises:
             ChannelClosedError: the benchmark is gone.

@@ -154,7 +154,7 @@ class Child:
         self._agent.setup(binding, place.timeout_s)
         return self._agent.manual
 
-    def hear(self, sensors: Sequence[SpawnedSensor]) -> None:
+    def open_sensor_streams(self, sensors: Sequence[SpawnedSensor]) -> None:
         """Listen to the agent's sensors."""
         self._agent.name_sensors(sensors)
         for sensor in sensors:
@@ -164,7 +164,7 @@ class Child:
             except (RuntimeError, AttributeError) as error:
                 raise UserError(f"sensor '{sensor.id}' cannot be served by this simulator: {error}") from error
 
-    def stop_hearing(self, _: None) -> None:
+    def close_sensor_streams(self, _: None) -> None:
         """Stop listening, while the sensors are still there."""
         self._streams.stop()
 

@@ -198,16 +198,16 @@ class RemoteAgent:
         self._is_bound = True
         self.manual = self._call("setup", place, "setup", self._setup_limit_s) is True
 
-    def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
+    def open_sensor_streams(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Let the agent's process listen to the agent's sensors; True: it does."""
-        self._call("hear", list(sensors), "setup", self._setup_limit_s)
+        self._call("open_sensor_streams", list(sensors), "setup", self._setup_limit_s)
         self._hears = True
         return True
 
-    def stop_hearing(self) -> None:
+    def close_sensor_streams(self) -> None:
         """Let it stop; nothing happens where the process is gone."""
         if self._process.alive and not self._has_failed:
-            self._call("stop_hearing", None, "destroy", self._setup_limit_s)
+            self._call("close_sensor_streams", None, "destroy", self._setup_limit_s)
 
     def ask(self, frame: int, sensor_data: Mapping[str, tuple[int, Any]]) -> None:
         """Ask for the control for the frame that the world has reached, and do not wait for it.
@@ -299,7 +299,7 @@ class RemoteAgent:
             raise AgentCrashedError(sentence) from _there(error)
 
     def _understood(self, method: str, read: Callable[[], T]) -> T:
-        """What its process answered, read.
+        """Return the value that the agent's process answered.
 
         Raises:
             AgentCrashedError: it is not what BASU's own code in that process answers.
@@ -334,7 +334,7 @@ def _point(given: Sequence[Any]) -> RoutePoint:
 
 
 def _spec(given: dict[str, Any]) -> SensorSpec:
-    """A sensor out of JSON.
+    """Return the sensor that a JSON object describes.
 
     Raises:
         TypeError: a value is of another kind than BASU's own code in that process gives.

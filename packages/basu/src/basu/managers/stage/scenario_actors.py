@@ -84,7 +84,7 @@ def member_of(actor: carla.Actor, name: str) -> Member:
 
 
 def _spawned(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> Member:
-    """One of them."""
+    """Spawn one of the actors."""
     blueprint = _blueprint(library, spec, case)
     pose = carla.Transform(
         carla.Location(spec.pose.x_m, spec.pose.y_m, _ground_m(world, spec.pose) if spec.on_ground else spec.pose.z_m),

@@ -14,11 +14,11 @@ import numpy as np
 
 from basu.metrics.careful_driver.encounters import own_middle_m, way_of
 from basu.metrics.careful_driver.model import Situation
-from basu.metrics.careful_driver.simulation import Motion, Sizes, drive
+from basu.metrics.careful_driver.simulation import RelativeMotion, Sizes, drive
 from basu.metrics.speeding import limits_mps
 
 if TYPE_CHECKING:
-    from basu.metrics.careful_driver.encounters import Encounter, Way
+    from basu.metrics.careful_driver.encounters import OtherPath, VehicleEncounter
     from basu.metrics.careful_driver.model import CarefulDriver, Numbers
     from basu.records.history import History
 
@@ -26,7 +26,7 @@ ON_S = 10.0  # the models drive on for so long after the contact
 TREND_S = 0.5  # over which the other's braking and lateral speed before the contact are taken
 
 
-class Answer(NamedTuple):
+class ModelOutcome(NamedTuple):
     """The outcome of an encounter if one model of a careful driver had driven."""
 
     model: str
@@ -39,21 +39,25 @@ class Answer(NamedTuple):
     sentence: str
 
 
-def start(history: History, encounter: Encounter) -> tuple[float, float]:
+def start(history: History, encounter: VehicleEncounter) -> tuple[float, float]:
     """Return the place along the route and the speed with which a careful driver begins: not above the limit."""
     begin = encounter.begin_tick
     speed_mps = min(float(history.speed_mps()[begin]), float(limits_mps(history)[begin]))
     return own_middle_m(history, begin), speed_mps
 
 
-def answers(history: History, encounter: Encounter, models: tuple[CarefulDriver, ...]) -> tuple[Answer, ...]:
+def answers(
+    history: History, encounter: VehicleEncounter, models: tuple[CarefulDriver, ...]
+) -> tuple[ModelOutcome, ...]:
     """The answer of each model; none for an encounter that is none of the situations."""
     if encounter.situation is None or encounter.way is None:
         return ()
     return tuple(_answer(history, encounter, encounter.way, encounter.situation, model) for model in models)
 
 
-def _answer(history: History, encounter: Encounter, way: Way, situation: Situation, model: CarefulDriver) -> Answer:
+def _answer(
+    history: History, encounter: VehicleEncounter, way: OtherPath, situation: Situation, model: CarefulDriver
+) -> ModelOutcome:
     """Let one model drive."""
     begin, step_s = encounter.begin_tick, history.facts.step_s
     start_m, speed_mps = start(history, encounter)
@@ -71,7 +75,7 @@ def _answer(history: History, encounter: Encounter, way: Way, situation: Situati
         step_s,
     )
     reaction = float(driven.reaction_step[0])
-    answer = Answer(
+    answer = ModelOutcome(
         model=model.name,
         avoids=not bool(driven.contact[0]),
         from_mps=speed_mps,
@@ -84,7 +88,7 @@ def _answer(history: History, encounter: Encounter, way: Way, situation: Situati
     return answer._replace(sentence=_words(answer))
 
 
-def _words(answer: Answer) -> str:
+def _words(answer: ModelOutcome) -> str:
     """Return an answer as a sentence."""
     if np.isnan(answer.reaction_s):
         did = "sees no danger"
@@ -94,7 +98,7 @@ def _words(answer: Answer) -> str:
     return f"{answer.model} begins at {answer.from_mps:.1f} m/s, {did}, and {came}"
 
 
-def _motion(history: History, encounter: Encounter, way: Way) -> Motion:
+def _motion(history: History, encounter: VehicleEncounter, way: OtherPath) -> RelativeMotion:
     """Return the other's way from the beginning of the encounter on, recorded and then continued."""
     step_s, first = history.facts.step_s, encounter.begin_tick - int(way.tick[0])
     recorded = way.part(first, len(way.tick)) if first >= 0 else way
@@ -114,10 +118,10 @@ def _motion(history: History, encounter: Encounter, way: Way) -> Motion:
     )
     along_mps = np.concatenate([np.maximum(recorded.along_mps, 0.0), later_mps])
     across_mps = np.gradient(across_m, step_s)
-    return Motion(along_m[:, None], across_m[:, None], along_mps[:, None], across_mps[:, None])
+    return RelativeMotion(along_m[:, None], across_m[:, None], along_mps[:, None], across_mps[:, None])
 
 
-def _with_rest(history: History, encounter: Encounter, way: Way) -> Way:
+def _with_rest(history: History, encounter: VehicleEncounter, way: OtherPath) -> OtherPath:
     """Return a way with what the record has of it after a near miss, for up to `ON_S`."""
     key = int(encounter.other.rpartition("actor ")[2].rstrip(")"))
     last = min(len(history.frames) - 1, encounter.tick + round(ON_S / history.facts.step_s) // 2)

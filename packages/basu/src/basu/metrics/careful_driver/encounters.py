@@ -38,7 +38,7 @@ BESIDE_M = (
 )
 
 
-class Way(NamedTuple):
+class OtherPath(NamedTuple):
     """Another vehicle's way beside the planned route, (K,) each; the ticks are without a gap."""
 
     tick: Numbers
@@ -54,12 +54,12 @@ class Way(NamedTuple):
         """Lateral distance of its side from the strip that the vehicle under test sweeps in its lane."""
         return np.abs(self.across_m) - self.width_m
 
-    def part(self, first: int, end: int) -> Way:
+    def part(self, first: int, end: int) -> OtherPath:
         """Return some of its moments."""
         return self._replace(**{name: getattr(self, name)[first:end] for name in self._fields[:5]})
 
 
-class Encounter(NamedTuple):
+class VehicleEncounter(NamedTuple):
     """A contact or near miss with another vehicle."""
 
     tick: int
@@ -68,11 +68,11 @@ class Encounter(NamedTuple):
     situation: Situation | None  # None where it is none of the three
     sentence: str  # what happened, or why the models say nothing
     begin_tick: int  # the first from which a careful driver could have seen it coming; -1 without a situation
-    way: Way | None  # the other's, up to the contact
-    ahead: Way | None  # of the vehicle that the own one followed at the beginning; None for a cut-in
+    way: OtherPath | None  # the other's, up to the contact
+    ahead: OtherPath | None  # of the vehicle that the own one followed at the beginning; None for a cut-in
 
 
-def encounters(history: History) -> tuple[Encounter, ...]:
+def encounters(history: History) -> tuple[VehicleEncounter, ...]:
     """All contacts with actors, and near misses, in order of time."""
     found = [(event.tick, event.other_id, True) for event in beginnings(history, {}) if event.other_id != 0]
     for party in near_misses(history):
@@ -82,10 +82,10 @@ def encounters(history: History) -> tuple[Encounter, ...]:
     return tuple(_encounter(history, *one) for one in sorted(found))
 
 
-def _encounter(history: History, tick: int, key: int, is_contact: bool) -> Encounter:  # noqa: FBT001 - unpacked
+def _encounter(history: History, tick: int, key: int, is_contact: bool) -> VehicleEncounter:  # noqa: FBT001 - unpacked
     """One contact or near miss with its situation."""
     kind = history.facts.actor_types.get(key, "an unknown type")
-    bare = Encounter(tick, f"{kind} (actor {key})", is_contact, None, "", -1, None, None)
+    bare = VehicleEncounter(tick, f"{kind} (actor {key})", is_contact, None, "", -1, None, None)
     if not kind.startswith("vehicle.") or kind in BICYCLES:
         what = "pedestrian" if kind.startswith("walker.") else "cyclist" if kind in BICYCLES else "thing"
         return bare._replace(sentence=f"no model: the other is a {what}, and the models know motor vehicles only")
@@ -99,12 +99,12 @@ def _encounter(history: History, tick: int, key: int, is_contact: bool) -> Encou
     return _with_situation(history, bare, way, key)
 
 
-def way_of(history: History, key: int, last: int) -> Way | None:
+def way_of(history: History, key: int, last: int) -> OtherPath | None:
     """Return the way of an actor up to the tick ``last``, over `LOOK_BACK_S`; None where it was not there before."""
     return way_between(history, key, max(0, last - round(LOOK_BACK_S / history.facts.step_s)), last)
 
 
-def way_between(history: History, key: int, first: int, last: int) -> Way | None:
+def way_between(history: History, key: int, first: int, last: int) -> OtherPath | None:
     """Return the way of an actor from one tick to another, or its last part without a gap; None where it left."""
     rows = history.others[history.others["id"] == key]
     rows = rows[(rows["tick"] >= first) & (rows["tick"] <= last)]
@@ -114,7 +114,7 @@ def way_between(history: History, key: int, first: int, last: int) -> Way | None
     return _beside_route(history, rows[int(gaps[-1]) + 1 if len(gaps) else 0 :], key)
 
 
-def _beside_route(history: History, rows: StructuredArray, key: int) -> Way | None:
+def _beside_route(history: History, rows: StructuredArray, key: int) -> OtherPath | None:
     """Return rows of one actor as a way beside the route, which is taken near the vehicle under test."""
     route = history.facts.route
     at_m = history.frames["route_s_m"][rows["tick"]]
@@ -139,7 +139,7 @@ def _beside_route(history: History, rows: StructuredArray, key: int) -> Way | No
     turned_rad = course_rad - np.arctan2(unit[nearest, 1], unit[nearest, 0])
     half_m = history.facts.actor_sizes.get(key, UNKNOWN_M)
     vehicle = history.facts.vehicle
-    return Way(
+    return OtherPath(
         tick=rows["tick"].astype(np.int64),
         along_m=s_m[:-1][nearest] + forward_m[picked],
         across_m=right_m[picked],
@@ -156,7 +156,7 @@ def own_middle_m(history: History, tick: int) -> float:
     return float(history.frames["route_s_m"][tick]) + (vehicle.front_m - vehicle.rear_m) / 2.0
 
 
-def _unfit(history: History, way: Way, last: int) -> str:
+def _unfit(history: History, way: OtherPath, last: int) -> str:
     """Return why an encounter is none of the situations at all; empty where it may be one."""
     if way.turned_rad[-1] >= AGAINST_RAD:
         return "the other came towards the vehicle, and the models know traffic in one direction"
@@ -173,7 +173,7 @@ def _unfit(history: History, way: Way, last: int) -> str:
     return ""
 
 
-def _with_situation(history: History, bare: Encounter, way: Way, key: int) -> Encounter:
+def _with_situation(history: History, bare: VehicleEncounter, way: OtherPath, key: int) -> VehicleEncounter:
     """Return an encounter with a vehicle ahead in the lane, with its situation if it is one of the three."""
     step_s = history.facts.step_s
     outside = np.flatnonzero(way.clear_m > 0.0)
@@ -198,13 +198,13 @@ def _with_situation(history: History, bare: Encounter, way: Way, key: int) -> En
 
 def _checked(
     history: History,
-    bare: Encounter,
+    bare: VehicleEncounter,
     situation: Situation,
     sentence: str,
-    way: Way,
+    way: OtherPath,
     begin: int,
-    leader: Way | None,
-) -> Encounter:
+    leader: OtherPath | None,
+) -> VehicleEncounter:
     """Return an encounter with its situation, unless the vehicle under test stood when it began."""
     tick = int(way.tick[begin])
     if float(history.speed_mps()[tick]) < STOOD_MPS:
@@ -213,23 +213,23 @@ def _checked(
     return bare._replace(situation=situation, sentence=sentence, begin_tick=tick, way=way, ahead=leader)
 
 
-def _time_s(history: History, way: Way, index: int) -> float:
+def _time_s(history: History, way: OtherPath, index: int) -> float:
     return float(history.frames["t_s"][int(way.tick[index])])
 
 
-def _index_of(way: Way, leader: Way, index: int) -> int:
+def _index_of(way: OtherPath, leader: OtherPath, index: int) -> int:
     """Return the place in one way of a moment of another."""
     return int(np.clip(leader.tick[index] - way.tick[0], 0, len(way.tick) - 1))
 
 
-def sideways_begins(way: Way, entry: int, step_s: float) -> int:
+def sideways_begins(way: OtherPath, entry: int, step_s: float) -> int:
     """Return the moment from which the other moved towards the lane until its entry."""
     towards_mps = -np.gradient(np.abs(way.across_m), step_s)
     calm = np.flatnonzero(towards_mps[:entry] <= SIDEWAYS_MPS)
     return int(calm[-1]) if len(calm) else 0
 
 
-def _braking_begins(way: Way, step_s: float) -> int | None:
+def _braking_begins(way: OtherPath, step_s: float) -> int | None:
     """Return the moment before the other's last braking; None where it did not brake."""
     over = max(1, round(OVER_S / step_s))
     if len(way.tick) <= over:
@@ -244,7 +244,7 @@ def _braking_begins(way: Way, step_s: float) -> int | None:
     return begin if lost_mps >= SLOWED_MPS else None
 
 
-def _uncovered(history: History, way: Way, key: int) -> tuple[Way, int] | None:
+def _uncovered(history: History, way: OtherPath, key: int) -> tuple[OtherPath, int] | None:
     """Return the vehicle that drove between both and left the lane, with the moment; None where none did."""
     for rival in sorted({int(each) for each in np.unique(history.others["id"])} - {key}):
         if not history.facts.actor_types.get(rival, "").startswith("vehicle."):

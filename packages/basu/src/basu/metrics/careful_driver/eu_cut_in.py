@@ -15,7 +15,7 @@ import numpy as np
 from basu.metrics.careful_driver.model import Situation
 
 if TYPE_CHECKING:
-    from basu.metrics.careful_driver.encounters import Encounter, Way
+    from basu.metrics.careful_driver.encounters import OtherPath, VehicleEncounter
     from basu.metrics.careful_driver.model import Flags
     from basu.records.history import History
 
@@ -48,7 +48,7 @@ class Intrusion(NamedTuple):
     gap_m: float  # between the bumpers, negative where the other is beside
 
 
-def demand(history: History, encounter: Encounter, from_m: float, speed_mps: float) -> Demand | None:
+def demand(history: History, encounter: VehicleEncounter, from_m: float, speed_mps: float) -> Demand | None:
     """What the table demands of a vehicle that is at ``from_m`` when the cut-in begins, and keeps ``speed_mps``.
 
     None for another situation, before the intrusion, and for differences of speed that the table does not have.
@@ -62,7 +62,7 @@ def demand(history: History, encounter: Encounter, from_m: float, speed_mps: flo
     return _found(max(0.0, seen.ttc_s), seen.difference_kmh)
 
 
-def intrusion(history: History, way: Way, begin_tick: int, from_m: float, speed_mps: float) -> Intrusion | None:
+def intrusion(history: History, way: OtherPath, begin_tick: int, from_m: float, speed_mps: float) -> Intrusion | None:
     """Return the moment in which another vehicle is `INTRUSION_M` within the planned lane; None where it never is.
 
     The own vehicle is at ``from_m`` along the route at ``begin_tick``, and keeps ``speed_mps`` from then on.
@@ -78,7 +78,7 @@ def intrusion(history: History, way: Way, begin_tick: int, from_m: float, speed_
     return Intrusion(int(way.tick[at]), ttc_s, closing_mps * KMH, gap_m)
 
 
-def is_inside(history: History, way: Way) -> Flags:
+def is_inside(history: History, way: OtherPath) -> Flags:
     """Return at which moments of a way the other is `INTRUSION_M` or more within the planned lane."""
     route, vehicle = history.facts.route, history.facts.vehicle
     half_lane_m = np.interp(way.along_m, route.s_m, route.lane_width_m) / 2.0

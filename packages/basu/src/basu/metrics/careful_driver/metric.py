@@ -12,19 +12,24 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.careful_driver.counterfactual import answers, start
 from basu.metrics.careful_driver.encounters import encounters
 from basu.metrics.careful_driver.eu_cut_in import demand
+from basu.metrics.careful_driver.fsm import Fsm
+from basu.metrics.careful_driver.human import CarefulHuman
 from basu.metrics.careful_driver.model import Situation
-from basu.metrics.careful_driver.standard_grid import MODELS
+from basu.metrics.careful_driver.reg157 import Reg157
+from basu.metrics.careful_driver.rss import Rss
 from basu.metrics.json_schema import choice, flag, integer, listing, number, record, text
 from basu.metrics.registry import NAME_WIDTH, Drive, Metric, register
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.careful_driver.counterfactual import Answer
-    from basu.metrics.careful_driver.encounters import Encounter
+    from basu.metrics.careful_driver.counterfactual import ModelOutcome
+    from basu.metrics.careful_driver.encounters import VehicleEncounter
+    from basu.metrics.careful_driver.model import CarefulDriver
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
+MODELS: tuple[CarefulDriver, ...] = (Fsm(), CarefulHuman(), Rss(), Reg157())
 _ANSWER = record(
     about_="what one model would have done",
     model=choice([model.name for model in MODELS]),
@@ -101,7 +106,7 @@ def in_words(row: Mapping[str, Any]) -> str:
     return f"at {row['t_s']:.1f} s with {row['other']}, {row['situation']}: {'; '.join(said)}"
 
 
-def _row(history: History, encounter: Encounter) -> dict[str, Any]:
+def _row(history: History, encounter: VehicleEncounter) -> dict[str, Any]:
     """One encounter as plain values."""
     frame = history.frames[encounter.tick]
     has_begun = encounter.begin_tick >= 0
@@ -121,7 +126,7 @@ def _row(history: History, encounter: Encounter) -> dict[str, Any]:
     }
 
 
-def _answer(answer: Answer) -> dict[str, Any]:
+def _answer(answer: ModelOutcome) -> dict[str, Any]:
     """One answer as plain values: what was not measured is null."""
     found = answer._asdict()
     for name in ("reaction_s", "least_gap_m"):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from basu.metrics.careful_driver.model import CarefulDriver, Flags, Numbers, Situation
 
 
-class Motion(NamedTuple):
+class RelativeMotion(NamedTuple):
     """The others' way, (T, N) each, on the path of the own vehicle."""
 
     along_m: Numbers  # middles
@@ -32,7 +32,7 @@ class Sizes(NamedTuple):
     width_m: float | Numbers
 
 
-class Driven(NamedTuple):
+class SimulatedEncounters(NamedTuple):
     """What came of N encounters, (N,) each."""
 
     contact: Flags
@@ -60,13 +60,13 @@ def drive(
     model: CarefulDriver,
     start_m: Numbers,
     speed_mps: Numbers,
-    other: Motion,
+    other: RelativeMotion,
     sizes: Sizes,
     situation: Situation,
     step_s: float,
     *,
     dismisses: bool = False,
-) -> Driven:
+) -> SimulatedEncounters:
     """Let a model drive; ``start_m`` (N,) is the place of its vehicle's middle, ``speed_mps`` (N,) its speed.
 
     With ``dismisses``, an encounter is over without a contact once the model holds it to be harmless. Otherwise the
@@ -91,10 +91,10 @@ def drive(
         hardest_mps2 = np.maximum(hardest_mps2, np.where(state.is_over | (contact_step >= 0.0), 0.0, used_mps2))
         if dismisses:
             state.is_over |= model.dismisses(view, situation)
-    return Driven(contact_step >= 0.0, contact_step, impact_mps, reaction_step, hardest_mps2, least_gap_m)
+    return SimulatedEncounters(contact_step >= 0.0, contact_step, impact_mps, reaction_step, hardest_mps2, least_gap_m)
 
 
-def _view(state: _State, other: Motion, sizes: Sizes, step: int) -> View:
+def _view(state: _State, other: RelativeMotion, sizes: Sizes, step: int) -> View:
     """Return what the model sees in a step."""
     ahead_m, across_m = other.along_m[step] - state.at_m, other.across_m[step]
     half_m = sizes.length_m / 2.0

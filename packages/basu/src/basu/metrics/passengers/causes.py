@@ -159,7 +159,7 @@ def _reason(kind: StopCause, stop: HarshStop, away_m: float, target_mps: float, 
 
 
 def _contact(history: History, stop: HarshStop) -> Cause | None:
-    """A collision explains any braking."""
+    """Return the collision that explains a braking, if there was one."""
     slack = round(CONTACT_S / history.facts.step_s)
     for event in history.collisions:
         if stop.onset_tick - slack <= event.tick <= stop.tick:

@@ -139,7 +139,7 @@ class Passengers(Metric):
         return _comfortable(value), _on_time(value)
 
     def columns(self, result: JudgedRun) -> list[Column]:
-        """Passed, failed, or a dash."""
+        """Return whether the passengers' verdict passed or failed, or a dash."""
         value = result.metrics[self.name]
         said = "\N{EN DASH}" if value is None else "passed" if value["passed"] else "failed"
         return [Column("passengers", said)]

@@ -34,7 +34,7 @@ def table(result: Result, *, details: bool = True) -> str:
             *success_lines(result),
             *score_lines(result),
             *infraction_lines(result),
-            *met([dict(row) for row in result.scenarios]),
+            *scenario_lines([dict(row) for row in result.scenarios]),
             *(line for own in result.own.values() for line in own.lines(result)),
             *_simulated(result.meta),
             *(metric_lines(result) if details else []),
@@ -130,7 +130,7 @@ def _simulated(meta: Mapping[str, Any]) -> list[str]:
 NOT_REACHED = "not reached"
 
 
-def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
+def scenario_lines(scenarios: Sequence[dict[str, Any]]) -> list[str]:
     """Return a line of counts for a route's scenarios, and a line for each: time, name, verdict, reason."""
     if not scenarios:
         return []
@@ -149,6 +149,6 @@ def verdict_word(row: dict[str, Any]) -> str:
 
 
 def _line(row: dict[str, Any]) -> str:
-    """One scenario."""
+    """Return the line of one scenario: time, verdict, name and reason."""
     when = f"{row['began_s']:8.1f} s" if row["began_s"] is not None else " " * 10
     return f"  {when}  {verdict_word(row):<21} {row['id']} ({row['scenario']}): {row['message']}"

@@ -36,7 +36,7 @@ class MarkedEvent:
 
     @property
     def title(self) -> str:
-        """It in a line."""
+        """Return the event as one line."""
         what = "Event" if self.factor is None else "Infraction"
         return f"{what} {self.label}: {words(self.kind)} at {self.t_s:.1f} s"
 

@@ -72,7 +72,7 @@ def html(element: Element) -> str:
 
 
 def _written(value: object) -> str:
-    """An attribute's value."""
+    """Return an attribute's value as text."""
     return number(value) if isinstance(value, float) else str(value)
 
 

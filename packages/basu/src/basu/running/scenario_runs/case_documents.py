@@ -176,7 +176,7 @@ def matrix_of(
 
 
 def _design(options: ScenarioOptions) -> dict[str, Any] | None:
-    """How parameters were sampled."""
+    """Return how the parameters were sampled."""
     design = design_of(options)
     if design is None:
         return None

@@ -33,7 +33,7 @@ from basu.running.preparation import agent_of
 from basu.running.scenario_runs.case_documents import matrix_of, run_config
 from basu.running.scenario_runs.chosen_cases import suites_of
 from basu.running.scenario_runs.player import case_player
-from basu.running.scenario_runs.suite import Suite
+from basu.running.scenario_runs.suite import MatrixDrives
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -108,7 +108,7 @@ def play_matrix(
     """
     scoring = scoring or Scoring()
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
-    suite = Suite(options, _loaded(options) if given is None else list(given.values()))
+    suite = MatrixDrives(options, _loaded(options) if given is None else list(given.values()))
     for sentence in filter(None, map(ignored_wishes, suite.agents)):
         print(f"basu: warning: {sentence}", file=sys.stderr)
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
@@ -139,7 +139,7 @@ def play_matrix(
 
 
 def _play(
-    batch: Batch, suite: Suite, player: PlayerSpec, workers: int, found: dict[int, DriveDone], *, quiet: bool
+    batch: Batch, suite: MatrixDrives, player: PlayerSpec, workers: int, found: dict[int, DriveDone], *, quiet: bool
 ) -> int:
     """Play the drives of a suite that are not in ``found``, and add them to it; return the exit code.
 

@@ -1,4 +1,4 @@
-"""`Suite`: the drives of a run of scenarios, each a case, a repetition and an agent, with job and folder."""
+"""`MatrixDrives`: the drives of a run of scenarios, each a case, a repetition and an agent, with job and folder."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class SuiteDrive(NamedTuple):
     column: int  # of the agent
 
 
-class Suite:
+class MatrixDrives:
     """All drives of a command: cases before repetitions before agents."""
 
     def __init__(self, options: ScenarioOptions, agents: Sequence[FoundAgent]) -> None:

@@ -20,7 +20,7 @@ LAG_S = 0.075  # a frame until the lane change begins, and half a frame by which
 STEADY_MPS = 0.2  # by which a steady speed changes in that time
 
 
-class Crossing(NamedTuple):
+class LaneChangeCrossing(NamedTuple):
     """A lane change up to the moment of the intrusion."""
 
     along_m: float
@@ -28,7 +28,7 @@ class Crossing(NamedTuple):
     share: float  # of its speed that a vehicle has along the lane in that moment
 
 
-def crossing_to(moved_m: float, across_m: float, over_m: float) -> Crossing:
+def crossing_to(moved_m: float, across_m: float, over_m: float) -> LaneChangeCrossing:
     """Return the part of a lane change, ``across_m`` over ``over_m``, in which it moves ``moved_m`` sideways.
 
     The change is that of `Path.swerved`.
@@ -38,7 +38,7 @@ def crossing_to(moved_m: float, across_m: float, over_m: float) -> Crossing:
     driven_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(u * over_m), np.diff(right_m)))])
     at = float(np.interp(moved_m, right_m, u))
     slope = across_m / over_m * 30.0 * at**2 * (1.0 - at) ** 2
-    return Crossing(at * over_m, float(np.interp(at, u, driven_m)), 1.0 / math.hypot(1.0, slope))
+    return LaneChangeCrossing(at * over_m, float(np.interp(at, u, driven_m)), 1.0 / math.hypot(1.0, slope))
 
 
 class SlowerUntilTtc(PathFollower):

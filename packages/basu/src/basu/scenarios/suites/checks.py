@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 OFF_ROAD_M = 1.0  # of the way: less is the edge of a wheel
 
 
-class Answer(enum.Enum):
+class RequirementAnswer(enum.Enum):
     """What one case says about a requirement."""
 
     HELD = "held"
@@ -27,7 +27,7 @@ class Answer(enum.Enum):
 class CaseAnswer(NamedTuple):
     """An answer with its reason."""
 
-    answer: Answer
+    answer: RequirementAnswer
     sentence: str
 
 
@@ -41,16 +41,16 @@ def answer_of(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer
     case = result["case"]
     verdict = Verdict(case["verdict"])
     if verdict is Verdict.AGENT_FAULT:
-        return CaseAnswer(Answer.BROKEN, case["message"])
+        return CaseAnswer(RequirementAnswer.BROKEN, case["message"])
     if not verdict.counts:
-        return CaseAnswer(Answer.NOT_SHOWN, case["message"])
+        return CaseAnswer(RequirementAnswer.NOT_SHOWN, case["message"])
     found = CHECKS[check["kind"]](check, result)
     completed = case["assessment"]["completed"]
-    if found.answer is Answer.HELD and completed["holds"] is False:
-        return CaseAnswer(Answer.NOT_SHOWN, f"not completed: {completed['sentence']}")
+    if found.answer is RequirementAnswer.HELD and completed["holds"] is False:
+        return CaseAnswer(RequirementAnswer.NOT_SHOWN, f"not completed: {completed['sentence']}")
     left_m = _off_road_m(result)
-    if found.answer is Answer.HELD and left_m >= OFF_ROAD_M:
-        return CaseAnswer(Answer.BROKEN, f"it drove {left_m:.1f} m off the road; {found.sentence}")
+    if found.answer is RequirementAnswer.HELD and left_m >= OFF_ROAD_M:
+        return CaseAnswer(RequirementAnswer.BROKEN, f"it drove {left_m:.1f} m off the road; {found.sentence}")
     return found
 
 
@@ -69,35 +69,40 @@ def _criterion(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswe
     """Held where a criterion of the case is."""
     said = [each for each in result["case"]["judgements"] if each["criterion"] == check["criterion"]]
     if not said or said[0]["passed"] is None:
-        return CaseAnswer(Answer.NOT_SHOWN, f"the case does not judge {check['criterion']}")
-    return CaseAnswer(Answer.HELD if said[0]["passed"] else Answer.BROKEN, said[0]["sentence"])
+        return CaseAnswer(RequirementAnswer.NOT_SHOWN, f"the case does not judge {check['criterion']}")
+    return CaseAnswer(RequirementAnswer.HELD if said[0]["passed"] else RequirementAnswer.BROKEN, said[0]["sentence"])
 
 
 def _verdict(_check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer:
     """Held where the case is passed."""
     case = result["case"]
-    return CaseAnswer(Answer.HELD if case["verdict"] == Verdict.SUCCESS.value else Answer.BROKEN, case["message"])
+    return CaseAnswer(
+        RequirementAnswer.HELD if case["verdict"] == Verdict.SUCCESS.value else RequirementAnswer.BROKEN,
+        case["message"],
+    )
 
 
 def _at_most(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer:
     """Held where a figure of the drive is not above a limit."""
     value = FIGURES[check["figure"]](result)
     if value is None:
-        return CaseAnswer(Answer.NOT_SHOWN, f"the record has no {check['figure']}")
-    answer = Answer.HELD if value <= check["limit"] else Answer.BROKEN
+        return CaseAnswer(RequirementAnswer.NOT_SHOWN, f"the record has no {check['figure']}")
+    answer = RequirementAnswer.HELD if value <= check["limit"] else RequirementAnswer.BROKEN
     return CaseAnswer(answer, f"{check['figure']} {value:.2f} {check['unit']}, at most {check['limit']:g}")
 
 
 def _careful_driver(check: Mapping[str, Any], result: Mapping[str, Any]) -> CaseAnswer:
     """Broken where the ego touched a vehicle and the named model would have avoided that."""
     untouched = _no_contact({}, result)
-    if untouched.answer is not Answer.BROKEN:
+    if untouched.answer is not RequirementAnswer.BROKEN:
         return untouched
     for row in result["careful_drivers"]["encounters"]:
         said = next((each for each in row["answers"] if each["model"] == check["model"]), None)
         if row["is_contact"] and said is not None:
-            return CaseAnswer(Answer.BROKEN if said["avoids"] else Answer.NOT_DEMANDED, said["sentence"])
-    return CaseAnswer(Answer.BROKEN, f"{untouched.sentence}; {check['model']} says nothing about it")
+            return CaseAnswer(
+                RequirementAnswer.BROKEN if said["avoids"] else RequirementAnswer.NOT_DEMANDED, said["sentence"]
+            )
+    return CaseAnswer(RequirementAnswer.BROKEN, f"{untouched.sentence}; {check['model']} says nothing about it")
 
 
 CHECKS: dict[str, Callable[[Mapping[str, Any], Mapping[str, Any]], CaseAnswer]] = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from basu.output.report.plots.street_names import Taken, placed_names, street_at
+from basu.output.report.plots.street_names import MarkPlace, placed_names, street_at
 from basu.output.report.streets import Bounds, Line, Streets
 
 BOUNDS = Bounds(0.0, 0.0, 200.0, 200.0)
@@ -26,9 +26,9 @@ def test_a_street_of_two_lanes_has_one_name_and_one_without_a_name_has_none() ->
 
 def test_a_name_gives_way_to_marks_and_is_left_out_where_there_is_no_room() -> None:
     streets = Streets([ACROSS], ["Long Street"])
-    (beside,) = placed_names(streets, BOUNDS, 600.0, [Taken(100.0, 100.0, 0.0)])
+    (beside,) = placed_names(streets, BOUNDS, 600.0, [MarkPlace(100.0, 100.0, 0.0)])
     assert abs(beside.x_m - 100.0) * 3.0 > 35.0 + 13.0  # 3 px for each metre, half of the name and half of a mark
-    everywhere = [Taken(float(x_m), float(y_m), 0.0) for x_m in range(0, 201, 5) for y_m in range(0, 201, 5)]
+    everywhere = [MarkPlace(float(x_m), float(y_m), 0.0) for x_m in range(0, 201, 5) for y_m in range(0, 201, 5)]
     assert placed_names(streets, BOUNDS, 600.0, everywhere) == []
 
 
@@ -41,7 +41,7 @@ def test_two_names_do_not_touch() -> None:
 
 
 def test_what_has_no_room_on_a_telephone_is_minor() -> None:
-    marks = [Taken(float(x_m), 100.0, 0.0) for x_m in range(0, 201, 30)]
+    marks = [MarkPlace(float(x_m), 100.0, 0.0) for x_m in range(0, 201, 30)]
     (one,) = placed_names(Streets([ACROSS], ["A Street With A Name"]), BOUNDS, 1100.0, marks)
     (same,) = placed_names(Streets([ACROSS], ["A"]), BOUNDS, 1100.0, marks)
     assert not same.is_minor

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from linden.maps.ground import Ground
 from linden.maps.navigation.raster import CROSSWALK, EDGE, ROAD, SIDEWALK
-from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.model import OpenDrive
-from linden.maps.opendrive.roadside import RoadObject
+from linden.maps.opendrive.outlines import ring_of
 from linden.protocol.values.enums import LaneType
 
 F64 = NDArray[np.float64]
@@ -69,7 +69,7 @@ def crosswalks(
         for thing in road.objects:
             if not thing.is_crosswalk:
                 continue
-            outline_m = _outline(tables, index, thing)
+            outline_m = ring_of(tables, index, thing) * (1.0, -1.0, 1.0)
             if len(outline_m) < 3:
                 continue
             found.append([outline_m, *_ramps(outline_m, ground, lane_of_triangle, lane_type)])
@@ -80,35 +80,16 @@ def crosswalk_outlines(opendrive: OpenDrive) -> list[tuple[int, list[tuple[float
     """Return the road and the outline of every crosswalk in OpenDRIVE's frame, m."""
     tables = tables_of(opendrive)
     outlines = [
-        (road.id, _outline(tables, index, thing))
+        (road.id, ring_of(tables, index, thing))
         for index, road in enumerate(opendrive.roads)
         for thing in road.objects
         if thing.is_crosswalk
     ]
     return [
-        (road_id, [(float(x_m), -float(y_m)) for x_m, y_m in outline_m[:, :2]])
+        (road_id, [(float(x_m), float(y_m)) for x_m, y_m in outline_m[:, :2]])
         for road_id, outline_m in outlines
         if len(outline_m) >= 3
     ]
-
-
-def _outline(tables: Tables, road_index: int, thing: RoadObject) -> F64:
-    """Return an object's outline in CARLA's frame, (N, 3) in m, open; from its sizes where it has none."""
-    half_x, half_y = 0.5 * thing.length_m, 0.5 * thing.width_m
-    corners = [(c.first_m, c.second_m, c.z_m, c.is_along_road) for c in thing.outline] or [
-        (x, y, 0.0, False) for x, y in ((-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y))
-    ]
-    along_m = np.array([first if is_along else thing.s_m for first, _, _, is_along in corners])
-    aside_m = np.array([second if is_along else thing.t_m for _, second, _, is_along in corners])
-    s_m = np.clip(along_m, 0.0, tables.road_length_m[road_index])
-    road = np.full(len(s_m), road_index)
-    pose = tables.curves.pose(road, s_m)
-    local = np.array([(0.0, 0.0) if is_along else (first, second) for first, second, _, is_along in corners])
-    cosine, sine = np.cos(pose.heading_rad + thing.heading_rad), np.sin(pose.heading_rad + thing.heading_rad)
-    x_m = pose.x_m - np.sin(pose.heading_rad) * aside_m + cosine * local[:, 0] - sine * local[:, 1]
-    y_m = pose.y_m + np.cos(pose.heading_rad) * aside_m + sine * local[:, 0] + cosine * local[:, 1]
-    outline_m = np.column_stack([x_m, -y_m, tables.elevation.value(road, s_m)])
-    return outline_m[:-1] if len(outline_m) > 1 and np.allclose(outline_m[0], outline_m[-1]) else outline_m
 
 
 def _ramps(outline_m: F64, ground: Ground, lane_of_triangle: I32, lane_type: NDArray[np.uint32]) -> list[F64]:

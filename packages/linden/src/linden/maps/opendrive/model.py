@@ -216,12 +216,12 @@ class OpenDrive:
 
     @cached_property
     def road_by_id(self) -> MappingProxyType[int, Road]:
-        """Roads by their id."""
+        """Return the roads by their id."""
         return MappingProxyType({road.id: road for road in self.roads})
 
     @cached_property
     def junction_by_id(self) -> MappingProxyType[int, Junction]:
-        """Junctions by their id."""
+        """Return the junctions by their id."""
         return MappingProxyType({junction.id: junction for junction in self.junctions})
 
     def signals(self) -> Iterator[tuple[Road, Signal]]:

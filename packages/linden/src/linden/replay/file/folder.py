@@ -17,7 +17,7 @@ class RecordingFolder:
 
     @property
     def path(self) -> Path:
-        """The folder.
+        """Return the folder of the recorded files.
 
         Raises:
             Refusal: none is given, and the user has none.

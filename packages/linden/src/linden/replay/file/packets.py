@@ -116,7 +116,7 @@ class Frame:
 
     @property
     def removed(self) -> Records:
-        """Actors that went: ``layouts.REMOVED``."""
+        """Return the actors that this frame removed, as ``layouts.REMOVED``."""
         return self._records(PacketId.REMOVED)
 
     @property
@@ -126,7 +126,7 @@ class Frame:
 
     @property
     def collisions(self) -> Records:
-        """Contacts of this frame: ``layouts.COLLISION``."""
+        """Return the contacts of this frame, as ``layouts.COLLISION``."""
         return self._records(PacketId.COLLISIONS)
 
     @property

@@ -112,7 +112,7 @@ class Scene:
 
     @cached_property
     def layers(self) -> NDArray[np.int64]:
-        """The layer of each box."""
+        """Return the layer of each box."""
         of_kind = np.array([int(LAYER[kind]) for kind in ObjectKind])
         layers: NDArray[np.int64] = of_kind[self.things["kind"][self.boxes["thing"]]]
         return layers

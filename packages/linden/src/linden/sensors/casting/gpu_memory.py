@@ -114,7 +114,7 @@ class Gpu:
         return capture.graph
 
     def replay(self, graph: Any) -> None:  # noqa: ANN401 - a graph of Warp's
-        """Launch what was captured."""
+        """Launch the captured kernels again."""
         wp.capture_launch(graph, stream=self.queue)
 
 

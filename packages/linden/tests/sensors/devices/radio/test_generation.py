@@ -6,14 +6,16 @@ from itertools import pairwise
 import pytest
 
 from linden.protocol.values.space import Vector3D
-from linden.sensors.devices.radio.generation import Generation, Motion, generate
+from linden.sensors.devices.radio.generation import Generation, StationMotion, generate
 from linden.sensors.devices.radio.spec import CamSpec
 
 FRAME_S = 0.05
 USUAL = CamSpec()
 
 
-def sent(motion: Callable[[float], Motion | None], seconds: float, spec: CamSpec = USUAL) -> list[tuple[float, bool]]:
+def sent(
+    motion: Callable[[float], StationMotion | None], seconds: float, spec: CamSpec = USUAL
+) -> list[tuple[float, bool]]:
     """Times of the messages, and which of them have the low-frequency container."""
     state, found = Generation(), []
     for frame in range(round(seconds / FRAME_S)):
@@ -29,12 +31,12 @@ def gaps(found: list[tuple[float, bool]]) -> list[float]:
     return [round(later - earlier, 6) for (earlier, _), (later, _) in pairwise(found)]
 
 
-def at_rest(_now_s: float) -> Motion:
-    return Motion(Vector3D(), 0.0, 0.0)
+def at_rest(_now_s: float) -> StationMotion:
+    return StationMotion(Vector3D(), 0.0, 0.0)
 
 
-def driving(speed_mps: float) -> Callable[[float], Motion]:
-    return lambda now_s: Motion(Vector3D(x=speed_mps * now_s), 0.0, speed_mps)
+def driving(speed_mps: float) -> Callable[[float], StationMotion]:
+    return lambda now_s: StationMotion(Vector3D(x=speed_mps * now_s), 0.0, speed_mps)
 
 
 def test_at_rest_there_is_one_message_a_second_and_each_has_the_slow_container() -> None:
@@ -53,13 +55,13 @@ def test_the_slow_container_comes_each_half_second() -> None:
 
 
 def test_braking_hard_and_turning_fast_call_for_messages() -> None:
-    assert set(gaps(sent(lambda now_s: Motion(Vector3D(), 0.0, 6.0 * now_s), 4.0))) == {0.1}
-    assert set(gaps(sent(lambda now_s: Motion(Vector3D(), (350.0 + 25.0 * now_s) % 360.0, 0.0), 4.0))) == {0.2}
+    assert set(gaps(sent(lambda now_s: StationMotion(Vector3D(), 0.0, 6.0 * now_s), 4.0))) == {0.1}
+    assert set(gaps(sent(lambda now_s: StationMotion(Vector3D(), (350.0 + 25.0 * now_s) % 360.0, 0.0), 4.0))) == {0.2}
 
 
 def test_a_short_interval_is_kept_for_three_messages() -> None:
-    def jump(now_s: float) -> Motion:
-        return Motion(Vector3D(x=5.0 if now_s > 0.16 else 0.0), 0.0, 0.0)
+    def jump(now_s: float) -> StationMotion:
+        return StationMotion(Vector3D(x=5.0 if now_s > 0.16 else 0.0), 0.0, 0.0)
 
     assert [time_s for time_s, _ in sent(jump, 4.0)] == [0.0, 0.2, 0.4, 0.6, 0.8, 1.8, 2.8, 3.8]
 
@@ -76,6 +78,6 @@ def test_a_road_side_unit_keeps_the_greatest_interval_and_has_no_slow_container(
 def test_a_long_frame_has_one_message() -> None:
     state, made = Generation(), 0
     for frame in range(5):
-        due, state = generate(state, CamSpec(), Motion(Vector3D(x=100.0 * frame), 0.0, 0.0), 2.0 * frame)
+        due, state = generate(state, CamSpec(), StationMotion(Vector3D(x=100.0 * frame), 0.0, 0.0), 2.0 * frame)
         made += due.message
     assert made == 5

@@ -23,7 +23,7 @@ YIELDS_S = 10.0  # after this time at the line the vehicle yields no more: the o
 HEAD = "LINE"
 
 
-class Standing(NamedTuple):
+class StoppedVehicle(NamedTuple):
     """A vehicle that stands at a line or crosses behind it."""
 
     x_m: float
@@ -31,7 +31,7 @@ class Standing(NamedTuple):
     stopped_s: float  # the world's time at which it stopped
 
 
-def line_text(standing: Standing, now_s: float) -> str:
+def line_text(standing: StoppedVehicle, now_s: float) -> str:
     """Return what a vehicle tells of its stop."""
     return f"{HEAD} {standing.x_m:.1f} {standing.y_m:.1f} {now_s - standing.stopped_s:.2f}"
 
@@ -41,7 +41,9 @@ class StopOrder:
 
     def __init__(self) -> None:
         """Know of no other vehicle."""
-        self._heard: dict[tuple[float, float], tuple[Standing, float]] = {}  # by the line, with the time of the text
+        self._heard: dict[
+            tuple[float, float], tuple[StoppedVehicle, float]
+        ] = {}  # by the line, with the time of the text
 
     def hear(self, texts: Sequence[str], now_s: float) -> None:
         """Take in what was heard, and forget what is too old."""
@@ -54,10 +56,10 @@ class StopOrder:
             except ValueError:
                 continue
             if math.isfinite(x_m + y_m + ago_s):
-                self._heard[x_m, y_m] = Standing(x_m, y_m, now_s - ago_s), now_s
+                self._heard[x_m, y_m] = StoppedVehicle(x_m, y_m, now_s - ago_s), now_s
         self._heard = {line: each for line, each in self._heard.items() if now_s - each[1] <= KEPT_S}
 
-    def is_before(self, own: Standing, now_s: float) -> bool:
+    def is_before(self, own: StoppedVehicle, now_s: float) -> bool:
         """Return whether a vehicle that stopped earlier at another line of the junction is not through yet."""
         if now_s - own.stopped_s > YIELDS_S:
             return False

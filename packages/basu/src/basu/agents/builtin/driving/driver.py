@@ -107,7 +107,7 @@ class Driver:
         return DrivingCommand(pedals.throttle, pedals.brake, self._steer_rad)
 
     def _press(self, ego: DrivenVehicle, accel_mps2: float) -> Pedals:
-        """The feet follow the planner."""
+        """Return the pedals that bring the vehicle to the planner's speed."""
         planner = self.planner
         return self._pedals.step(ego.speed_mps, planner.speed_mps, accel_mps2, holding=planner.holding, gear=ego.gear)
 

@@ -78,7 +78,7 @@ class Planner:
         return self.accel_mps2
 
     def _stand(self, reason: str) -> None:
-        """Stay where one is."""
+        """Plan to stay at rest, and remember the reason."""
         self.speed_mps = self.accel_mps2 = 0.0
         self.holding, self.reason = True, reason
 

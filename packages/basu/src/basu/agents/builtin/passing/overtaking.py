@@ -200,7 +200,7 @@ class Overtaking:
         return False
 
     def _end(self, phase: PassingPhase) -> None:
-        """Back to the lane."""
+        """Drop the detour and go to the phase that follows."""
         self.phase, self.detour, self._need, self._free_since_s = phase, None, None, None
 
 

@@ -42,7 +42,7 @@ def rows(document: Mapping[str, Any], before: str = "") -> list[NamedFigure]:
 
 
 def table(found: list[NamedFigure], caption: str | None = None) -> Element:
-    """Rows as a table."""
+    """Return rows as a table of HTML."""
     body = e("tbody", *(e("tr", e("th", row.name, scope="row"), e("td", row.text)) for row in found))
     return e("table", None if caption is None else e("caption", caption), body, class_="figures")
 

@@ -199,7 +199,7 @@ def _path(x: NDArray[np.float64], y: NDArray[np.float64], steps: bool) -> str:  
 
 
 def _shades(shades: Sequence[Shade], begin_s: float, end_s: float) -> list[Element]:
-    """Hatched stretches of time."""
+    """Return the hatched stretches of time."""
     return [
         e(
             "i",

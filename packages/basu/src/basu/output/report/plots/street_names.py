@@ -35,7 +35,7 @@ class PlacedName(NamedTuple):
     is_minor: bool  # there is no room for it on a telephone
 
 
-class Taken(NamedTuple):
+class MarkPlace(NamedTuple):
     """A mark, shown so far above its place."""
 
     x_m: float
@@ -43,7 +43,7 @@ class Taken(NamedTuple):
     up_px: float
 
 
-class _Box(NamedTuple):
+class _NameBox(NamedTuple):
     """A rectangle about a name or a mark, in px of the map."""
 
     x_px: float
@@ -51,7 +51,7 @@ class _Box(NamedTuple):
     half_width_px: float
     half_height_px: float
 
-    def meets(self, other: _Box) -> bool:
+    def meets(self, other: _NameBox) -> bool:
         """Return whether both touch."""
         return (
             abs(self.x_px - other.x_px) < self.half_width_px + other.half_width_px
@@ -59,7 +59,7 @@ class _Box(NamedTuple):
         )
 
 
-def placed_names(streets: Streets, bounds: Bounds, width_px: float, taken: Sequence[Taken]) -> list[PlacedName]:
+def placed_names(streets: Streets, bounds: Bounds, width_px: float, taken: Sequence[MarkPlace]) -> list[PlacedName]:
     """Return a place for the name of each street where it touches no other name and no mark.
 
     Args:
@@ -82,11 +82,11 @@ def street_at(streets: Streets, x_m: float, y_m: float) -> str:
     return nearest
 
 
-def _placed(streets: Streets, bounds: Bounds, width_px: float, taken: Sequence[Taken]) -> list[PlacedName]:
+def _placed(streets: Streets, bounds: Bounds, width_px: float, taken: Sequence[MarkPlace]) -> list[PlacedName]:
     """Return the names that have room on a map of this width, those of the longest streets first."""
     px_per_m = width_px / bounds.width_m
     boxes = [
-        _Box((x_m - bounds.west_m) * px_per_m, (y_m - bounds.north_m) * px_per_m - up_px, MARK_PX, MARK_PX)
+        _NameBox((x_m - bounds.west_m) * px_per_m, (y_m - bounds.north_m) * px_per_m - up_px, MARK_PX, MARK_PX)
         for x_m, y_m, up_px in taken
     ]
     found = []
@@ -125,11 +125,11 @@ def _candidates(name: str, lines: Sequence[Line], bounds: Bounds) -> Iterator[Pl
         yield PlacedName(name, x_m, y_m, angle_deg, beside_px, is_minor=False)
 
 
-def _box(each: PlacedName, bounds: Bounds, px_per_m: float) -> _Box:
+def _box(each: PlacedName, bounds: Bounds, px_per_m: float) -> _NameBox:
     """Return the rectangle about a turned name."""
     turn_rad = math.radians(each.angle_deg)
     long_px, cos, sin = LETTER_PX * len(each.name), abs(math.cos(turn_rad)), abs(math.sin(turn_rad))
-    return _Box(
+    return _NameBox(
         (each.x_m - bounds.west_m) * px_per_m - each.beside_px * math.sin(turn_rad),
         (each.y_m - bounds.north_m) * px_per_m + each.beside_px * math.cos(turn_rad),
         (long_px * cos + HEIGHT_PX * sin + GAP_PX) / 2.0,
@@ -137,7 +137,7 @@ def _box(each: PlacedName, bounds: Bounds, px_per_m: float) -> _Box:
     )
 
 
-def _is_within(box: _Box, bounds: Bounds, px_per_m: float) -> bool:
+def _is_within(box: _NameBox, bounds: Bounds, px_per_m: float) -> bool:
     """Return whether a rectangle lies on the map as a whole."""
     return (
         box.half_width_px <= box.x_px <= bounds.width_m * px_per_m - box.half_width_px

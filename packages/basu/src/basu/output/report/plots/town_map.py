@@ -13,7 +13,7 @@ import numpy as np
 from basu.output.report import events
 from basu.output.report.plots.chart import ticks
 from basu.output.report.plots.decimate import path
-from basu.output.report.plots.street_names import Taken, placed_names
+from basu.output.report.plots.street_names import MarkPlace, placed_names
 from basu.output.report.streets import bounds_of, on_the_map
 from basu.output.report.templates import e, number, percent
 from basu.routing import ControlKind
@@ -125,10 +125,10 @@ def _word(text: str, x_m: float, y_m: float, bounds: Bounds, style: str, title: 
 def _names(history: History, streets: Streets, found: Sequence[MarkedEvent], bounds: Bounds) -> list[Element]:
     """Return the names of streets that have room beside all marks."""
     route = history.facts.route
-    marks = [Taken(x_m, y_m, 0.0) for x_m, y_m in route.points_m[[0, -1], :2].tolist()]
+    marks = [MarkPlace(x_m, y_m, 0.0) for x_m, y_m in route.points_m[[0, -1], :2].tolist()]
     for group, step_px in ((found, STACKED_PX), (route.stops, SERVICE_PX), (route.controls, 0)):
         places = [(float(each.x_m), float(each.y_m)) for each in group]
-        marks += [Taken(*at, step_px * up) for at, up in zip(places, _stacked(places, bounds), strict=True)]
+        marks += [MarkPlace(*at, step_px * up) for at, up in zip(places, _stacked(places, bounds), strict=True)]
     width_px = min(GREATEST_WIDTH_PX, GREATEST_HEIGHT_PX * bounds.width_m / bounds.height_m)
     return [
         e(

@@ -9,7 +9,7 @@ from basu.errors import UserError
 from basu.files import read_json
 from basu.intervals import FEW, clopper_pearson
 from basu.output.report.documents import RESULT_FILE
-from basu.scenarios.suites.checks import Answer, CaseAnswer, answer_of
+from basu.scenarios.suites.checks import CaseAnswer, RequirementAnswer, answer_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,13 +35,13 @@ def read_suites(folder: Path) -> list[dict[str, Any]]:
     return [read_json(path, "the suite", "play the suite again") for path in sorted(folder.glob(f"{PREFIX}*.json"))]
 
 
-class Evidence(NamedTuple):
+class RequirementEvidence(NamedTuple):
     """One case of a requirement with one agent."""
 
     case: str
     anchor: str  # of the case's folder, empty where it left none
     verdict: str  # BASU's own
-    answer: Answer
+    answer: RequirementAnswer
     sentence: str
 
 
@@ -50,18 +50,22 @@ class Answered(NamedTuple):
 
     agent: str
     word: str  # `MET`, `BROKEN` or `OPEN`
-    evidence: tuple[Evidence, ...]
+    evidence: tuple[RequirementEvidence, ...]
     confidence: tuple[str, ...]  # sentences
 
-    def count(self, answer: Answer) -> int:
+    def count(self, answer: RequirementAnswer) -> int:
         """Return the number of cases with an answer."""
         return sum(each.answer is answer for each in self.evidence)
 
     @property
     def summary(self) -> str:
         """The numbers of cases by answer."""
-        total, held = len(self.evidence), self.count(Answer.HELD)
-        others = [f"{self.count(each)} {each.value}" for each in Answer if each is not Answer.HELD and self.count(each)]
+        total, held = len(self.evidence), self.count(RequirementAnswer.HELD)
+        others = [
+            f"{self.count(each)} {each.value}"
+            for each in RequirementAnswer
+            if each is not RequirementAnswer.HELD and self.count(each)
+        ]
         return ", ".join([f"held in {held} of {total} cases", *others])
 
 
@@ -115,28 +119,30 @@ def _answered(
         for row in rows.get(case, ())
     )
     answers = [each.answer for each in evidence]
-    if Answer.BROKEN in answers:
+    if RequirementAnswer.BROKEN in answers:
         word = BROKEN
     else:
-        word = MET if Answer.HELD in answers and Answer.NOT_SHOWN not in answers else OPEN
+        word = MET if RequirementAnswer.HELD in answers and RequirementAnswer.NOT_SHOWN not in answers else OPEN
     return Answered(agent, word, evidence, _confidence(answers))
 
 
-def _evidence(folder: Path, requirement: Mapping[str, Any], case: str, cell: Mapping[str, Any] | None) -> Evidence:
+def _evidence(
+    folder: Path, requirement: Mapping[str, Any], case: str, cell: Mapping[str, Any] | None
+) -> RequirementEvidence:
     """Return the evidence of one drive."""
     if cell is None or not cell["folder"]:
-        return Evidence(case, "", NOT_PLAYED, Answer.NOT_SHOWN, "it was not played to its end")
+        return RequirementEvidence(case, "", NOT_PLAYED, RequirementAnswer.NOT_SHOWN, "it was not played to its end")
     try:
         result = read_json(folder / cell["folder"] / RESULT_FILE, "the document", "play the case again")
         found = answer_of(requirement["check"], result)
     except UserError as error:
-        found = CaseAnswer(Answer.NOT_SHOWN, str(error))
-    return Evidence(case, cell["folder"], cell["verdict"], *found)
+        found = CaseAnswer(RequirementAnswer.NOT_SHOWN, str(error))
+    return RequirementEvidence(case, cell["folder"], cell["verdict"], *found)
 
 
-def _confidence(answers: Sequence[Answer]) -> tuple[str, ...]:
+def _confidence(answers: Sequence[RequirementAnswer]) -> tuple[str, ...]:
     """Return sentences on how much the evidence says."""
-    held, broken = answers.count(Answer.HELD), answers.count(Answer.BROKEN)
+    held, broken = answers.count(RequirementAnswer.HELD), answers.count(RequirementAnswer.BROKEN)
     judged, total = held + broken, len(answers)
     if judged == 0:
         return ("No case shows anything.",)

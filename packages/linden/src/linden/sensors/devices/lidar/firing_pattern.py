@@ -47,7 +47,7 @@ class Fired(NamedTuple):
 
     @property
     def rays(self) -> int:
-        """How many there are."""
+        """Return the number of rays."""
         return len(self.up) * len(self.sine)
 
 

@@ -23,7 +23,7 @@ FACTS_INTERVAL_S = 0.5
 """The low-frequency container comes with the first message, and with one after at least this time."""
 
 
-class Motion(NamedTuple):
+class StationMotion(NamedTuple):
     """The motion of a station, by which the rules of generation decide."""
 
     location: Vector3D  # in the world, m
@@ -36,7 +36,7 @@ class Generation(NamedTuple):
 
     interval_s: float = 0.0  # T_GenCam
     last_s: float = -math.inf
-    last: Motion | None = None
+    last: StationMotion | None = None
     kept: int = 0  # messages since the interval was made
     facts_s: float = -math.inf
     made: int = 0
@@ -49,7 +49,7 @@ class Due(NamedTuple):
     facts: bool
 
 
-def generate(before: Generation, spec: CamSpec, motion: Motion | None, now_s: float) -> tuple[Due, Generation]:
+def generate(before: Generation, spec: CamSpec, motion: StationMotion | None, now_s: float) -> tuple[Due, Generation]:
     """Return what is due at ``now_s``, and the station after it; to be called once in every frame.
 
     A road side unit has no ``motion``. It sends at the greatest interval, without the container.
@@ -76,7 +76,7 @@ def generate(before: Generation, spec: CamSpec, motion: Motion | None, now_s: fl
     return Due(message=True, facts=facts), after
 
 
-def _has_changed(last: Motion, now: Motion) -> bool:
+def _has_changed(last: StationMotion, now: StationMotion) -> bool:
     turned_deg = abs((now.heading_deg - last.heading_deg + 180.0) % 360.0 - 180.0)
     return (
         turned_deg > HEADING_DEG

@@ -22,7 +22,7 @@ from linden.protocol.values.v2x import (
 from linden.sensors.devices.attributes import Schedule, interval_s
 from linden.sensors.devices.imu import compass_rad
 from linden.sensors.devices.radio.awareness import Place, Telling, awareness, vehicle_facts
-from linden.sensors.devices.radio.generation import Generation, Motion, generate
+from linden.sensors.devices.radio.generation import Generation, StationMotion, generate
 from linden.sensors.devices.radio.obstruction import Antenna
 from linden.sensors.devices.radio.spec import cam_spec, channel_spec
 from linden.simulation.actor_table import ActorRecord
@@ -103,7 +103,7 @@ class CamRadio(Radio[CooperativeAwarenessMessage, ReceivedCam]):
             return ()
         telling = None if station.carrier is None else _telling(episode, station.carrier)
         location = station.antenna.location._replace(z=station.antenna.ground_m)
-        motion = None if telling is None else Motion(location, telling.heading_deg, telling.speed_mps)
+        motion = None if telling is None else StationMotion(location, telling.heading_deg, telling.speed_mps)
         number = self._generation.made
         due, self._generation = generate(self._generation, self._spec, motion, episode.elapsed_s)
         if not due.message:

@@ -12,7 +12,7 @@ from basu.output.report.scenarios.page.route_section import card_style
 from basu.output.report.scenarios.suite_answers import BROKEN, MET, OPEN, answered
 from basu.output.report.scenarios.tally import LOOKS
 from basu.output.report.templates import render
-from basu.scenarios.suites.checks import Answer
+from basu.scenarios.suites.checks import RequirementAnswer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 STYLES = {MET: "passed", BROKEN: "failed", OPEN: "absent"}
 SIGNS = {
-    Answer.HELD: ("✓", "passed"),
-    Answer.BROKEN: ("✗", "failed"),
-    Answer.NOT_DEMANDED: ("=", "unjudged"),
-    Answer.NOT_SHOWN: ("○", "absent"),
+    RequirementAnswer.HELD: ("✓", "passed"),
+    RequirementAnswer.BROKEN: ("✗", "failed"),
+    RequirementAnswer.NOT_DEMANDED: ("=", "unjudged"),
+    RequirementAnswer.NOT_SHOWN: ("○", "absent"),
 }
 MEANINGS = {
-    Answer.HELD: "held",
-    Answer.BROKEN: "broken",
-    Answer.NOT_DEMANDED: "not demanded: what happened is beyond the requirement",
-    Answer.NOT_SHOWN: "not shown: the conflict did not come about, or the drive was not completed",
+    RequirementAnswer.HELD: "held",
+    RequirementAnswer.BROKEN: "broken",
+    RequirementAnswer.NOT_DEMANDED: "not demanded: what happened is beyond the requirement",
+    RequirementAnswer.NOT_SHOWN: "not shown: the conflict did not come about, or the drive was not completed",
 }
 
 

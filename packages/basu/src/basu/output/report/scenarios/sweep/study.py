@@ -97,7 +97,7 @@ def _study(scenario: str, agent: str, cases: list[dict[str, Any]]) -> Study | No
 def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
     """Return every parameter as a column, and last the case that was sampled: several may be, each at its place."""
     found = [
-        _column(
+        axis_of(
             parameter["name"],
             parameter["unit"],
             parameter["about"],
@@ -105,10 +105,10 @@ def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
         )
         for number, parameter in enumerate(cases[0]["parameters"])
     ]
-    return [*found, _column("case", "", "that was sampled", [case["id"].partition(":")[0] for case in cases])]
+    return [*found, axis_of("case", "", "that was sampled", [case["id"].partition(":")[0] for case in cases])]
 
 
-def _column(name: str, unit: str, about: str, values: list[float | str]) -> Axis:
+def axis_of(name: str, unit: str, about: str, values: list[float | str]) -> Axis:
     """Return a parameter's values as numbers."""
     if not any(isinstance(value, str) for value in values):
         return Axis(name, unit, about, np.array(values, dtype=np.float64), ())

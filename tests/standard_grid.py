@@ -12,19 +12,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.careful_driver.fsm import Fsm
-from basu.metrics.careful_driver.human import CarefulHuman
 from basu.metrics.careful_driver.model import Situation
-from basu.metrics.careful_driver.reg157 import Reg157
-from basu.metrics.careful_driver.rss import Rss
-from basu.metrics.careful_driver.simulation import Motion, Sizes, drive
+from basu.metrics.careful_driver.simulation import RelativeMotion, Sizes, drive
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from basu.metrics.careful_driver.model import CarefulDriver, Flags, Numbers
 
-MODELS: tuple[CarefulDriver, ...] = (Fsm(), CarefulHuman(), Rss(), Reg157())
 LENGTH_M, WIDTH_M, APART_M = 4.3, 1.9, 1.6
 STEP_S, RATE_HZ, STEPS = 0.1, 10.0, 350
 LATERAL_MPS2 = 1.5
@@ -66,7 +61,7 @@ def _contacts(model: CarefulDriver, lateral_mps: float) -> Flags:
     ahead_m = gap_m + LENGTH_M
     moved_m = np.cumsum(np.broadcast_to(other_mps, (STEPS, len(rows))), axis=0) / RATE_HZ
     along_m = np.concatenate([_earlier_m(other_mps, before) + ahead_m, [ahead_m], moved_m + ahead_m])
-    other = Motion(
+    other = RelativeMotion(
         along_m,
         np.repeat(across_m[:, None], len(rows), axis=1),
         np.broadcast_to(other_mps, along_m.shape),

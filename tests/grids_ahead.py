@@ -13,8 +13,8 @@ import numpy as np
 
 from basu.metrics.careful_driver.encounters import WANDERING_M
 from basu.metrics.careful_driver.model import G_MPS2, Situation
-from basu.metrics.careful_driver.simulation import Motion, Sizes, drive
-from basu.metrics.careful_driver.standard_grid import LENGTH_M, RATE_HZ, STEP_S, STEPS, WIDTH_M
+from basu.metrics.careful_driver.simulation import RelativeMotion, Sizes, drive
+from standard_grid import LENGTH_M, RATE_HZ, STEP_S, STEPS, WIDTH_M
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ def deceleration_contacts(model: CarefulDriver) -> Flags:
     slowing = own_mps - np.arange(STEPS)[:, None] * (G_MPS2 * share) / RATE_HZ
     speed_mps = np.maximum(slowing, 0.0)
     along_m = speed_mps.cumsum(axis=0) / RATE_HZ + (model.following_m(own_mps) + LENGTH_M)
-    other = Motion(along_m, np.zeros_like(along_m), speed_mps, np.zeros_like(along_m))
+    other = RelativeMotion(along_m, np.zeros_like(along_m), speed_mps, np.zeros_like(along_m))
     sizes = Sizes(LENGTH_M, WIDTH_M)
     driven = drive(model, own_mps / RATE_HZ, own_mps, other, sizes, Situation.DECELERATION, STEP_S)
     return driven.contact.reshape(len(DECELERATIONS_G), len(DECELERATION_KMH))
@@ -105,5 +105,5 @@ def _from_step(model: CarefulDriver, step: int, own_mps: Numbers, standing_m: Nu
     across_m = np.where(hit, leaving.across_m[at_hit], 0.0)
     still = np.zeros_like(along_m)
     start_m = np.repeat(own_mps[None, :], step + 1, axis=0).cumsum(axis=0)[-1] / RATE_HZ
-    other = Motion(along_m, across_m, still, still)
+    other = RelativeMotion(along_m, across_m, still, still)
     return drive(model, start_m, own_mps, other, Sizes(LENGTH_M, WIDTH_M), Situation.CUT_OUT, STEP_S).contact

@@ -1,7 +1,7 @@
 """What the map has at a place of the ego's route: relation to a junction, traffic control, bend and highway.
 
 The characteristics of a case state the same of the place where its conflict is (`basu.scenarios.characteristics`). The
-test `test_true_characteristics.py` compares both over all cases, and results of played cases have what is found here.
+test `test_true_characteristics.py` compares both over all cases.
 """
 
 from __future__ import annotations
