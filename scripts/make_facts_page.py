@@ -76,6 +76,7 @@ FACTS_OF_MAP = (
     Fact("places of named buildings", "building", "", "confidence", MEASURED),
     Fact("outlines of named buildings", "building", "", "size_confidence", MEASURED),
     Fact("heights of named buildings", "building", "height_m", "height_confidence", MEASURED),
+    Fact("signs with the names of buildings", "building", "name_sign_confidence", "name_sign_confidence", MEASURED),
     Fact("benches, bins, mailboxes", "furniture", "", "confidence", MEASURED),
     Fact("the railroad", "railroad", "", "confidence", MEASURED),
     Fact("crossings of the railroad", "railroad_crossing", "", "confidence", MEASURED),

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from basu_service.document import read_service
 from servers import RunningServer
 
 STEP_S = 0.05
+EXAMPLE = Path(__file__).parents[3] / "examples" / "hidden_person_agent.py"
 Services = Callable[..., tuple[int, Path]]
 DIES = """
 class Dies(AutonomousAgent):
@@ -219,3 +220,40 @@ def seen_walkers(folder: Path) -> dict[int, list[Any]]:
         if history.facts.actor_types.get(int(row["id"]), "").startswith("walker."):
             found.setdefault(int(row["id"]), []).append(row)
     return found
+
+
+@pytest.mark.slow
+def test_a_shuttle_that_another_one_warns_brakes_early_and_gently_for_a_person_that_it_cannot_see(
+    services: Services, tmp_path: Path
+) -> None:
+    warned, alone = (
+        braked(services, tmp_path, "Warned", "cooperative"),
+        braked(services, tmp_path, "Alone", "behavioral"),
+    )
+    assert (warned.hits, alone.hits) == (False, True)
+    assert warned.hardest_mps2 < 2.0
+    assert alone.hardest_mps2 > 5.0
+    assert warned.begins_s < alone.begins_s - 1.5
+
+
+class Braked(NamedTuple):
+    """How the first vehicle braked after it had reached 6 m/s."""
+
+    begins_s: float
+    hardest_mps2: float
+    hits: bool
+
+
+def braked(services: Services, folder: Path, agent: str, beside: str) -> Braked:
+    """Drive the example with a hidden person, as one of its agents."""
+    demand = folder / "no_persons.json"
+    demand.write_text(json.dumps({"schema_version": 1, "stops": {}, "patience_min": 20}))
+    options = ["--beside", beside, "--apart", 0.6, "--minutes", 0.4, "--demand", demand, "--no-holding", "--open"]
+    _, run = services(f"{EXAMPLE}:{agent}", *options, "--seed", 1, name=agent)
+    history = read_history(run)
+    frames = history.frames
+    speed_mps = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"])
+    fast = int(np.argmax(speed_mps > 6.0))
+    brakes = fast + int(np.argmax(frames["applied_brake"][fast:] > 0.02))
+    change_mps2 = (speed_mps[5:] - speed_mps[:-5]) / (5 * STEP_S)
+    return Braked(float(frames["t_s"][brakes]), -float(change_mps2[fast:].min()), bool(history.collisions))

@@ -87,6 +87,36 @@ def test_a_switched_identity_costs_one_switch_and_half_of_the_identities(folder:
     found = scores(folder, written(folder / "d.json", results))["all", "all"]
     assert found["MOTA"] == pytest.approx(1.0 - 1.0 / 18.0)
     assert found["IDF1"] == pytest.approx(15.0 / 18.0)
+    # 12 objects of two tracks are associated fully; those of the third count 3 / (3 + 3) each
+    assert found["AssA"] == pytest.approx((12.0 + 6.0 * 0.5) / 18.0)
+    assert found["DetA"] == 1.0
+    assert found["HOTA"] == pytest.approx(math.sqrt(15.0 / 18.0))
+
+
+@pytest.mark.parametrize(("shift", "limits"), [(0.0, 19), (0.2, 13), (0.5, 6)])
+def test_hota_of_shifted_rectangles_is_the_share_of_limits_up_to_their_iou(
+    folder: Path, truth: Truth, shift: float, limits: int
+) -> None:
+    path = written(folder / "d.json", coco_results(truth, shift=shift, tracks=True))
+    assert scores(folder, path)["all", "all"]["HOTA"] == pytest.approx(limits / 19.0)  # 0.05 to 0.95, IoU 1, 2/3, 1/3
+
+
+@pytest.mark.parametrize(("shift_m", "limits"), [(0.45, 15), (1.33, 6), (2.5, 0)])
+def test_hota_of_shifted_boxes_is_the_share_of_limits_up_to_their_similarity(
+    folder: Path, truth: Truth, shift_m: float, limits: int
+) -> None:
+    found = scores(folder, written(folder / "d.json", nuscenes_results(truth, shift_m=shift_m)))
+    assert found["class", "pedestrian"]["HOTA"] == pytest.approx(limits / 19.0)  # similarity 1 - shift / 2 m
+
+
+def test_without_the_package_of_hota_the_other_scores_stay_and_a_sentence_names_it(
+    folder: Path, truth: Truth, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("basu_truth.evaluating.track_scores.HOTA_PACKAGE", "trackers_that_is_missing")
+    found = scores(folder, written(folder / "d.json", coco_results(truth, tracks=True)))["all", "all"]
+    assert found["MOTA"] == 1.0
+    assert "HOTA" not in found
+    assert "pip install 'basu-truth[hota]'" in capsys.readouterr().out
 
 
 def test_label_files_of_kitti_are_scored_in_the_picture_and_in_space(folder: Path, truth: Truth) -> None:

@@ -11,6 +11,7 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu_truth.evaluating.detections import read_detections
 from basu_truth.evaluating.scoring import evaluate
+from basu_truth.evaluating.track_scores import has_hota
 from basu_truth.export_command import write_export
 from basu_truth.truth import TRUTH_FILE, Truth, read_truth
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     import argparse
 
     from basu_truth.evaluating.scoring import Evaluation
+
+WITHOUT_HOTA = "HOTA was not computed, because the package trackers is missing; pip install 'basu-truth[hota]'"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,6 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
         truth, read_detections(arguments.detections, truth), sensor=arguments.sensor, least=arguments.least
     )
     print(table(found))
+    if any("MOTA" in row.scores for row in found.rows) and not has_hota():
+        print(WITHOUT_HOTA)
     if arguments.json is not None:
         write_bytes(arguments.json, (json.dumps(found.document(), indent=2) + "\n").encode())
     return 0

@@ -12,6 +12,7 @@ from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIE
 from linden.maps.opendrive.spawn_points import spawn_points
 from linden.maps.standing import FURNITURE, blades_of
 from linden.protocol.values.enums import LaneType
+from linden_maps.streets.name_signs import PLACE_NAME
 
 
 class Counts(NamedTuple):
@@ -31,6 +32,7 @@ class Counts(NamedTuple):
     buildings: int
     furniture: int  # benches, bins, mailboxes
     street_name_signs: int
+    place_name_signs: int
     railroad_crossings: int
     street_names: int
     lanes: int
@@ -77,7 +79,8 @@ def count(opendrive: OpenDrive) -> Counts:
         objects=len(objects),
         buildings=sum(is_building(thing) for thing in objects),
         furniture=sum(thing.type == "obstacle" and thing.name in FURNITURE for thing in objects),
-        street_name_signs=sum(bool(blades_of(thing)) for thing in objects),
+        street_name_signs=sum(bool(blades_of(thing)) and thing.name != PLACE_NAME for thing in objects),
+        place_name_signs=sum(thing.name == PLACE_NAME for thing in objects),
         railroad_crossings=sum(thing.type == "railroadCrossing" for thing in objects),
         street_names=len({road.name for road in opendrive.roads if road.name and not road.is_in_junction}),
         lanes=len(tables.lanes),

@@ -63,6 +63,7 @@ def sketch() -> Any:
     """The functions above, for tests that draw a town of their own."""
 
     class Sketch:
+        lonlat = staticmethod(lonlat)
         street = staticmethod(street)
         point = staticmethod(point)
         crossing = staticmethod(crossing)

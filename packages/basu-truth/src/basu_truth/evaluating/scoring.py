@@ -9,7 +9,7 @@ from basu.errors import UserError
 from basu_truth.evaluating.box_scores import box_score
 from basu_truth.evaluating.rectangle_scores import rectangle_score
 from basu_truth.evaluating.slices import slices
-from basu_truth.evaluating.track_scores import track_score
+from basu_truth.evaluating.track_scores import has_hota, track_score
 from basu_truth.formats.kitti import TYPE
 
 if TYPE_CHECKING:
@@ -137,7 +137,11 @@ def _track_scores(
     if not found or any(each.track is None for each in found):
         return {}
     score = track_score(objects, found, part, counts)
-    return {"MOTA": score.mota, "MOTP": score.motp, "IDF1": score.idf1}
+    scores = {"MOTA": score.mota, "MOTP": score.motp, "IDF1": score.idf1}
+    if not has_hota():
+        return scores
+    hota, detections, association = (None, None, None) if score.hota is None else score.hota
+    return scores | {"HOTA": hota, "DetA": detections, "AssA": association}
 
 
 def _joined(first: Row, second: Row) -> Row:

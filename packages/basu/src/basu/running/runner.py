@@ -157,8 +157,8 @@ def show(done: DriveDone, options: RunOptions) -> int:
         print(table(each, details=options.details))
     if document is not None:
         print("\n".join(contact_lines(document)))
-    if options.record:
-        recording = read_run(done.folder).config["recording"]
+    recording = read_run(done.folder).config["recording"] if options.record else None
+    if recording is not None:  # else nothing was driven
         print(f"recording         {recording['file']} ({recording['where']})")
     print(f"result folder     {done.folder}")
     if not options.details:

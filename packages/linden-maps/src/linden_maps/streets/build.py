@@ -121,7 +121,7 @@ class _Assembly:
         for edge, sign in controls.speed_signs(self.facts, self.network, self.signal_ids):  # last, so that ids stay
             self.signals[edge].append(sign)
         signs = name_signs(self.facts, self.network)
-        for edge, thing in (*placed.objects, *rails(self.facts, self.network), *signs):
+        for edge, thing in (*placed.objects, *rails(self.facts, self.network), *signs, *placed.signs):
             self.objects[edge].append(thing._replace(id=next(self.object_ids)))
         street_roads = tuple(self._street_road(edge) for edge in range(len(self.network.edges)))
         every = [road for road in street_roads if road is not None]

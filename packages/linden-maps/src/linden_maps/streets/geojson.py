@@ -288,6 +288,7 @@ def _building(feature: _Feature, ring: tuple[Point, ...]) -> Building:
         ring=ring,
         height_m=feature.positive("height_m"),
         confidence=str(feature.properties.get("height_confidence", "unknown")),
+        sign_confidence=str(feature.properties.get("name_sign_confidence", "")),
     )
 
 

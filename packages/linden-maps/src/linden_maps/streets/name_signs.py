@@ -23,6 +23,7 @@ from linden_maps.streets.street_facts import Facts, Street
 POST_HALF_M = 0.03  # a round steel post of 2 3/8 in
 HEIGHT_M = 2.8  # two blades of 6 in above 2.4 m; section 2A.18 asks for 7 ft below the lower one
 KIND, NAME, BLADE = "pole", "StreetNameSign", "streetName"
+PLACE_NAME = "PlaceNameSign"  # name of the objects with a building's name, which `standing` makes
 _UNKNOWN = "unverified"  # what the facts say of a name that is a description
 
 

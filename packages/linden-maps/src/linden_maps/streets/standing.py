@@ -1,18 +1,23 @@
-"""Buildings and street furniture as objects of the road that passes nearest to each.
+"""Buildings, their name signs, and street furniture as objects of the road that passes nearest to each.
 
 A footprint is kept clear of the paved ground: what lies on it is cut away, because widths are often guessed. A building
 that would lose more than half of its ground is left out and counted.
 """
 
+import math
+import textwrap
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from shapely import LineString, MultiPolygon, Point, Polygon, STRtree, unary_union
 from shapely.geometry.base import BaseGeometry
+from shapely.ops import nearest_points
 
 from linden_maps.streets.cross_section import View, view
 from linden_maps.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
 from linden_maps.streets.document import Object
+from linden_maps.streets.name_signs import BLADE, HEIGHT_M, PLACE_NAME, POST_HALF_M
+from linden_maps.streets.name_signs import KIND as SIGN_KIND
 from linden_maps.streets.network import Network
 from linden_maps.streets.street_facts import Building, Facts, Furniture
 
@@ -21,13 +26,19 @@ SMALLEST_M2 = 4.0
 LEAST_SHARE = 0.5  # of a building's ground that has to be free of streets
 SIZE_M = {"bench": (1.8, 0.6, 0.8), "bin": (0.6, 0.6, 1.0), "mailbox": (0.6, 0.6, 1.3)}
 """Length along the street, width and height of furniture; estimates of usual sizes."""
+SIGN_BEFORE_WALL_M = 1.0  # an estimate, as is the length of its lines
+LINE_LETTERS = 24
 
 
 class Standing(NamedTuple):
-    """Objects (numbered 0) with the edge that each belongs to, and the ids of what has no room."""
+    """Objects (numbered 0) with the edge that each belongs to, and the ids of what has no room.
+
+    ``signs`` are the name signs of the buildings. A sign without room is left out under the id of its building.
+    """
 
     objects: tuple[tuple[int, Object], ...]
     left_out: tuple[str, ...]
+    signs: tuple[tuple[int, Object], ...] = ()
 
 
 def standing(facts: Facts, network: Network) -> Standing:
@@ -36,19 +47,26 @@ def standing(facts: Facts, network: Network) -> Standing:
         return Standing((), ())
     roads = _Roads(network)
     placed: list[tuple[int, Object]] = []
+    signs: list[tuple[int, Object]] = []
     left_out = []
     for building in facts.buildings:
         found = _building(building, roads)
         if found is None:
             left_out.append(building.id)
-        else:
-            placed.append(found)
+            continue
+        placed.append(found)
+        if building.sign_confidence:
+            sign = _sign(building, roads)
+            if sign is None:
+                left_out.append(building.id)
+            else:
+                signs.append(sign)
     for thing in facts.furniture:
         if roads.is_paved(Point(thing.point)):
             left_out.append(thing.id)
         else:
             placed.append(_furniture(thing, roads))
-    return Standing(tuple(placed), tuple(left_out))
+    return Standing(tuple(placed), tuple(left_out), tuple(signs))
 
 
 class _Roads:
@@ -112,6 +130,31 @@ def _building(building: Building, roads: _Roads) -> tuple[int, Object] | None:
         corners.reverse()
     name = building.name or ("building" if building.kind == "yes" else building.kind)
     return _object(roads, middle, ("building", name), corners, building.height_m, building.confidence)
+
+
+def _sign(building: Building, roads: _Roads) -> tuple[int, Object] | None:
+    """Return the sign with a building's name, before the wall that is nearest to the road; None without room there.
+
+    The sign stands across the road, so that drivers of both directions read it. A long name has several lines.
+    """
+    ground = Polygon(building.ring)
+    _, road, s_m = roads.place(ground.centroid)
+    wall, axis = nearest_points(ground, Point(pose_at(road, s_m)[:2]))
+    away_m = wall.distance(axis)
+    if away_m <= SIGN_BEFORE_WALL_M:
+        return None
+    share = SIGN_BEFORE_WALL_M / away_m
+    foot = Point(round(wall.x + share * (axis.x - wall.x), 3), round(wall.y + share * (axis.y - wall.y), 3))
+    if roads.is_paved(foot):
+        return None
+    _, road, s_m = roads.place(foot)
+    at = pose_at(road, s_m)._replace(x_m=foot.x, y_m=foot.y)
+    half = POST_HALF_M
+    ends = ((-half, -half), (half, -half), (half, half), (-half, half), (-half, -half))
+    corners = [moved(at, u, v)[:2] for u, v in ends]
+    edge, post = _object(roads, foot, (SIGN_KIND, PLACE_NAME), corners, HEIGHT_M, building.sign_confidence)
+    lines = textwrap.wrap(building.name, LINE_LETTERS)
+    return edge, post._replace(notes=tuple((BLADE, f"{math.pi / 2:.3f} {line}") for line in lines))
 
 
 def _furniture(thing: Furniture, roads: _Roads) -> tuple[int, Object]:

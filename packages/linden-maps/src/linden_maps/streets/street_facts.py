@@ -113,7 +113,10 @@ class Crossing(NamedTuple):
 
 
 class Building(NamedTuple):
-    """A building on its footprint: a ring of corners, closed (the first corner stands at the end again)."""
+    """A building on its footprint: a ring of corners, closed (the first corner stands at the end again).
+
+    ``sign_confidence`` says how sure it is that a sign before the building bears its name; empty: there is no sign.
+    """
 
     id: str
     name: str
@@ -121,6 +124,7 @@ class Building(NamedTuple):
     ring: tuple[Point, ...]
     height_m: float
     confidence: str
+    sign_confidence: str = ""
 
 
 class Furniture(NamedTuple):

@@ -52,8 +52,9 @@ ADVANCE = 0.76
 class Standing(NamedTuple):
     """A thing that the map says stands beside a road: a building (named, where the map names it), furniture, or a sign.
 
-    ``kind`` is building, bench, bin, mailbox or street_name_sign. A sign's name joins its streets' names by " / ", and
-    its boxes are the post and one blade for each of them. The place is that of its foot, in CARLA's frame.
+    ``kind`` is building, bench, bin, mailbox or street_name_sign. A sign's name joins its streets' names, or the lines
+    of a place's name, by " / ". Its boxes are the post and one blade for each of them. The place is that of its foot,
+    in CARLA's frame.
     """
 
     kind: str
