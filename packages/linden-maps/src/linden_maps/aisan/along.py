@@ -1,4 +1,4 @@
-"""The part of a Lanelet2 map along a route, for Autoware.AI: the work of its node lane_rule grows with the map's square."""
+"""The part of a Lanelet2 map along a route: the work of Autoware.AI's lane_rule grows with the square of the map."""
 
 import math
 from dataclasses import replace
@@ -67,8 +67,8 @@ def way_along(lanelet_map: LaneletMap, positions_m: F64) -> shapely.Geometry:
 def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) -> LaneletMap:
     """Return the map without what is farther from a way than ``within_m``.
 
-    A lanelet is kept as a whole when one of its sides comes near enough. A regulatory element is kept while a kept lanelet
-    refers to it.
+    A lanelet is kept as a whole when one of its sides comes near enough. A regulatory element is kept while a kept
+    lanelet refers to it.
     """
     near = _near_ways(lanelet_map, way, within_m)
     kept = {
