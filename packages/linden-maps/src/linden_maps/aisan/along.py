@@ -17,7 +17,7 @@ from linden_maps.lanelet2.model import LaneletMap, Relation
 from linden_maps.polylines import lengths
 
 _ON_LANE_M = 2.0
-"""A position of a route lies on each lane whose middle is this near; across a junction there are several."""
+"""A position of a route lies on each lane with its middle this near; across a junction there are several."""
 _FAR_M = 30.0
 """A position with no lane within this distance is not on this map."""
 
