@@ -61,6 +61,12 @@ def test_a_position_far_from_every_lane_is_named(lanelets):
         way_along(lanelets, np.array([(5.0, -1.75), (5.0, -400.0)]))
 
 
+def test_a_distance_that_reaches_no_side_of_a_lane_is_refused(lanelets):
+    way = way_along(lanelets, np.array(ALONG_THE_FIRST))
+    with pytest.raises(UserError, match=r"within 0\.5 m of the route; give --within a larger distance"):
+        part_along(lanelets, way, 0.5)
+
+
 def test_everything_is_kept_within_a_great_distance(lanelets):
     part = part_along(lanelets, way_along(lanelets, np.array(ALONG_THE_FIRST)), 1000.0)
     assert convert(part).tables.files() == convert(lanelets).tables.files()

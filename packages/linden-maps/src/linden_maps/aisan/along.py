@@ -69,6 +69,9 @@ def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) 
 
     A lanelet is kept as a whole when one of its sides comes near enough. A regulatory element is kept while a kept
     lanelet refers to it.
+
+    Raises:
+        UserError: no road lanelet is near enough.
     """
     near = _near_ways(lanelet_map, way, within_m)
     kept = {
@@ -76,6 +79,8 @@ def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) 
         for number, lanelet in lanelet_map.lanelets()
         if not near.isdisjoint((*lanelet.refs("left"), *lanelet.refs("right")))
     }
+    if not any(number in kept for number, _ in lanelet_map.lanelets("road")):
+        raise UserError(f"no side of a lane comes within {within_m:g} m of the route; give --within a larger distance")
     kept |= {ref for number in kept for ref in lanelet_map.relations[number].refs("regulatory_element")}
     relations = {number: _with_members_of(one, kept) for number, one in lanelet_map.relations.items() if number in kept}
     used = {member.ref for one in relations.values() for member in one.members if member.kind == "way"}
