@@ -1,9 +1,9 @@
 """The part of a Lanelet2 map along a route: the work of Autoware.AI's lane_rule grows with the square of the map."""
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import cast
 
 import networkx as nx
 import numpy as np
@@ -107,9 +107,9 @@ def _with_members_of(relation: Relation, kept: set[int]) -> Relation:
     return relation._replace(members=members)
 
 
-def _digraph(lanelet_map: LaneletMap, courses: list[Course]) -> nx.DiGraph:
+def _digraph(lanelet_map: LaneletMap, courses: list[Course]) -> "nx.DiGraph[int]":
     """Return which course leads into which; an edge is as long as the course it leaves, in m."""
-    graph = nx.DiGraph()
+    graph: nx.DiGraph[int] = nx.DiGraph()
     graph.add_nodes_from(range(len(courses)))
     for nth, after in enumerate(graph_of(lanelet_map, courses).successors):
         length_m = float(lengths(courses[nth].middle)[-1])
@@ -134,12 +134,9 @@ def _lanes_at(tree: shapely.STRtree, lines: list[shapely.LineString], place: F64
     return [nearest]
 
 
-def _between(graph: nx.DiGraph, starts: list[int], ends: list[int]) -> list[int]:
+def _between(graph: "nx.DiGraph[int]", starts: list[int], ends: list[int]) -> list[int]:
     """Return the courses of the shortest way from one of some courses to one of others; none where no way leads."""
-    targets = set(ends)
-    best: tuple[float, list[int]] = (math.inf, [])
-    away_m, ways = nx.multi_source_dijkstra(graph, set(starts))
-    for end in sorted(targets):
-        if away_m.get(end, math.inf) < best[0]:
-            best = away_m[end], ways[end]
-    return best[1]
+    found = cast("tuple[dict[int, float], dict[int, list[int]]]", nx.multi_source_dijkstra(graph, set(starts)))
+    away_m, ways = found
+    reached = [end for end in ends if end in away_m]
+    return ways[min(reached, key=lambda end: (away_m[end], end))] if reached else []
