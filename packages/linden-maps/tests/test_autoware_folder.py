@@ -138,3 +138,39 @@ def _kerbs(lanelet_map):
         if way.tags.get("subtype") == "curbstone" and len(right) == 2 and np.linalg.norm(right[1] - right[0]) > 20.0:
             found.append((1.0, right))
     return found
+
+
+def _package(tmp_path, cloud, *words):
+    (tmp_path / "small.xodr").write_text(two_roads())
+    made = ["map", "package", str(tmp_path / "small.xodr"), "-o", str(tmp_path / "town"), *words]
+    return main([*made, "--pointcloud", str(cloud)] if cloud is not None else made)
+
+
+def test_the_folder_along_a_route_has_its_lanes_and_the_whole_lanelet_map(tmp_path, cloud):
+    route = tmp_path / "route.xml"
+    route.write_text('<routes><route><position x="5" y="1.75"/><position x="30" y="1.75"/></route></routes>')
+    words = ("--for", "autoware", "--ros1", "--along", str(route), "--within", "0.5")
+    assert _package(tmp_path, cloud, *words[:3]) == 0
+    vectors = tmp_path / "town" / "maps" / "vector_maps"
+    whole = {path.name: path.read_bytes() for path in vectors.rglob("*") if path.is_file()}
+    assert _package(tmp_path, cloud, *words[:-1], "0.5") == 2  # nearer than the sides of the lane: it makes no lane
+    assert {path.name: path.read_bytes() for path in vectors.rglob("*") if path.is_file()} == whole
+    assert _package(tmp_path, cloud, *words[:-1], "4") == 0
+    part = {path.name: path.read_bytes() for path in vectors.rglob("*") if path.is_file()}
+    assert part["small.osm"] == whole["small.osm"]
+    assert 1 < len(part["lane.csv"].splitlines()) <= len(whole["lane.csv"].splitlines())
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--for", "carla", "--along", "route.xml"), "--along are for --for autoware; leave them out"),
+        (("--for", "autoware", "--along", "none.xml"), "cannot read the route of none.xml"),
+    ],
+)
+def test_a_route_that_cannot_be_used_is_refused_before_the_work(tmp_path, capsys, words, sentence):
+    assert _package(tmp_path, None, *words) == 2
+    told = capsys.readouterr().err
+    assert sentence in told
+    assert "step" not in told
+    assert not (tmp_path / "town").exists()

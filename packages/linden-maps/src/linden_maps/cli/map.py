@@ -124,6 +124,15 @@ def _add_package(command: argparse.ArgumentParser) -> None:
     )
     _add_choices(command)
     command.add_argument("--every", default="5.0", metavar="M", help="between two scans (default: %(default)s)")
+    command.add_argument(
+        "--along",
+        type=Path,
+        metavar="ROUTE",
+        help="for autoware: write the Aisan vector map and the cloud only along the first route of this file",
+    )
+    command.add_argument(
+        "--within", type=positive, default=20.0, metavar="M", help="of the route (default: %(default)s)"
+    )
 
 
 def add_pointcloud(command: argparse.ArgumentParser) -> None:

@@ -4,12 +4,15 @@ import argparse
 import shutil
 from pathlib import Path
 
+import shapely
+
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
 from linden_maps import autoware_folder as folder
+from linden_maps.aisan.along import part_along, read_positions, way_along
 from linden_maps.aisan.convert import convert as aisan_of
 from linden_maps.cli import map_convert, map_pointcloud
 from linden_maps.cli.map import add_pointcloud
@@ -36,8 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _for_carla(arguments: argparse.Namespace) -> int:
-    if arguments.pointcloud is not None or arguments.ros1:
-        raise UserError("--pointcloud and --ros1 are for --for autoware; leave them out")
+    if arguments.pointcloud is not None or arguments.ros1 or arguments.along is not None:
+        raise UserError("--pointcloud, --ros1 and --along are for --for autoware; leave them out")
     names = names_of(Path(arguments.file).name.removesuffix(".xodr"))
     world_map = world_map_of(arguments.file)
     scene = scenery_of(world_map).scene
@@ -52,12 +55,15 @@ def _for_carla(arguments: argparse.Namespace) -> int:
 
 
 def _for_autoware(arguments: argparse.Namespace) -> int:
+    positions_m = None if arguments.along is None else read_positions(arguments.along)
     source = content_of(arguments.file)
     opendrive = parsed(arguments.file, source)
     _begin(1)
     converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
     _begin(2)
-    vectors = aisan_of(converted.lanelet_map)
+    way = None if positions_m is None else way_along(converted.lanelet_map, positions_m)
+    whole = converted.lanelet_map
+    vectors = aisan_of(whole if way is None else part_along(whole, way, arguments.within))
     converted = map_convert.written_of(converted, arguments)
     lanelet_map = converted.lanelet_map
     town = Path(arguments.file).name.removesuffix(".xodr")
@@ -72,7 +78,7 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
         for name, data in vectors.tables.files().items():
             (stage / layout.aisan / name).write_bytes(data)
         _begin(3)
-        _put_cloud(arguments, stage / layout.point_cloud)
+        _put_cloud(arguments, stage / layout.point_cloud, way)
         _begin(4)
         if layout.metadata is not None:
             (stage / layout.metadata).write_bytes(folder.point_cloud_metadata(stage / layout.point_cloud))
@@ -87,8 +93,8 @@ def _begin(step: int) -> None:
     say_step(step, len(_STEPS), _STEPS[step - 1])
 
 
-def _put_cloud(arguments: argparse.Namespace, target: Path) -> None:
-    """Write the point cloud: a copy of the one that was named, else that of a drive."""
+def _put_cloud(arguments: argparse.Namespace, target: Path, way: shapely.Geometry | None) -> None:
+    """Write the point cloud: a copy of the one that was named, else that of a drive, of a way or of all streets."""
     if arguments.pointcloud is not None:
         try:
             shutil.copyfile(arguments.pointcloud, target)
@@ -98,4 +104,4 @@ def _put_cloud(arguments: argparse.Namespace, target: Path) -> None:
     parser = argparse.ArgumentParser(prog="linden map package")
     add_pointcloud(parser)
     words = [arguments.file, "-o", str(target), "--voxel", arguments.voxel, "--every", arguments.every]
-    map_pointcloud.run(parser.parse_args(words))
+    map_pointcloud.run(parser.parse_args(words), None if way is None else map_pointcloud.Near(way, arguments.within))

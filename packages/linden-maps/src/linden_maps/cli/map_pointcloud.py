@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import shapely
 from tqdm import tqdm
 
 from linden.cli.process import broken_off_cleanly
@@ -37,9 +38,16 @@ class _Job(NamedTuple):
     remark: str  # for the head of the file
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Write the point cloud, and say what is in it."""
-    job = _driven(arguments) if arguments.source is None else _existing(arguments)
+class Near(NamedTuple):
+    """A way in the map's frame, and the distance in m within which the lidar scans beside it."""
+
+    way: shapely.Geometry
+    within_m: float
+
+
+def run(arguments: argparse.Namespace, near: Near | None = None) -> int:
+    """Write the point cloud, of all streets or of those near a way, and say what is in it."""
+    job = _driven(arguments, near) if arguments.source is None else _existing(arguments)
     with (
         broken_off_cleanly(),
         working_folder() as folder,  # before the work shows, so that an interrupt finds the folder
@@ -57,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _driven(arguments: argparse.Namespace) -> _Job:
+def _driven(arguments: argparse.Namespace, near: Near | None) -> _Job:
     """Return the scans of a drive that is yet to be made.
 
     Raises:
@@ -70,6 +78,10 @@ def _driven(arguments: argparse.Namespace) -> _Job:
     check_device(arguments.device)
     world_map = world_map_of(arguments.file or _DEFAULT_MAP)
     places = places_along(parse(world_map.text), arguments.every, arguments.height)
+    if near is not None:
+        points = shapely.points([place[:2] for place in places])
+        is_near = shapely.dwithin(points, near.way, near.within_m)
+        places = [place for place, one in zip(places, is_near.tolist(), strict=True) if one]
     if not places:
         raise UserError(f"{world_map.name} has no driving lane, so there is nowhere to drive")
     standing = standing_of(world_map, scenery_of(world_map).scene, MapCache.of_user())
