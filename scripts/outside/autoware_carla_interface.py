@@ -169,7 +169,7 @@ def run(
     listen(theirs, heard, ours, [*native, CLOCK], own, ticks)
     wall_s, frames = time.monotonic() - began_s, max(1, len(heard[CLOCK.name]))
     spent = [1e3 * (cpu_s(each.pid) - at) / frames for each, at in zip((server, node), began_cpu, strict=True)]
-    yield f"{frames} frames in {wall_s:.1f} s of wall time; processor ms a frame: server {spent[0]:.0f}, node {spent[1]:.0f}"
+    yield f"{frames} frames in {wall_s:.1f} s; processor ms a frame: server {spent[0]:.0f}, node {spent[1]:.0f}"
     status = ours_of(collected, vehicle)
     yield from comparison(heard, own, status, native, wall_s, wrong)
     yield from driven(theirs, vehicle, wrong)
@@ -230,7 +230,7 @@ def vehicle_of(client: carla.Client, node: subprocess.Popen[bytes]) -> carla.Veh
     while time.monotonic() < until_s and node.poll() is None:
         world = client.get_world()
         found = [each for each in world.get_actors().filter(VEHICLE) if each.attributes["role_name"] == ROLE]
-        if found and len(world.get_actors().filter("sensor.*")) == 4:  # noqa: PLR2004 - of objects.json
+        if found and len(world.get_actors().filter("sensor.*")) == 4:
             return found[0]
         time.sleep(0.5)
     raise SystemExit("the node spawned no vehicle with its sensors; see node.log")
@@ -396,7 +396,7 @@ def driven(node: Ros2Node, vehicle: carla.Vehicle, wrong: list[str]) -> Iterator
         way, now = after.location.distance(before.location), vehicle.get_velocity().length()
         seen.append((now, turned))
         yield f"| {command.name} for {command.lasts_s} s | {speed:.2f} | {now:.2f} | {way:.1f} | {turned:.1f} |"
-    if seen[0][0] < 3.0 or seen[1][1] < 3.0 or seen[2][0] > seen[1][0] / 2.0:  # noqa: PLR2004 - far from what is seen
+    if seen[0][0] < 3.0 or seen[1][1] < 3.0 or seen[2][0] > seen[1][0] / 2.0:
         wrong.append(f"the vehicle did not obey: {seen}")
     send(node, vehicle, Command("no number", math.nan, 0.0, 0.0, 1.0))
     control = vehicle.get_control()
@@ -413,7 +413,7 @@ def driven(node: Ros2Node, vehicle: carla.Vehicle, wrong: list[str]) -> Iterator
     send(node, vehicle, brake)
     away = vehicle.get_transform().location.distance(start.location)
     yield f"/initialpose: the vehicle stands {away:.2f} m from the pose"
-    if away > 2.0:  # noqa: PLR2004 - it falls from 2 m above the road
+    if away > 2.0:
         wrong.append(f"/initialpose put the vehicle {away:.1f} m from the pose")
 
 
