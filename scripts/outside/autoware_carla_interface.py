@@ -383,7 +383,21 @@ def frame_of(message: Any) -> str:
 
 
 def driven(node: Ros2Node, vehicle: carla.Vehicle, wrong: list[str]) -> Iterator[str]:
-    """Send the commands of `DRIVE` and a start pose by the node's topics, and yield what the vehicle did."""
+    """Send a start pose and the commands of `DRIVE` by the node's topics, and yield what the vehicle did."""
+    types = node.types
+    brake, start = DRIVE[-1], vehicle.get_world().get_map().get_spawn_points()[3]
+    pose = types.message("geometry_msgs/msg/PoseWithCovariance")
+    pose.pose.position.x, pose.pose.position.y = start.location.x, -start.location.y
+    pose.pose.position.z = start.location.z
+    turn = -math.radians(start.rotation.yaw) / 2.0
+    pose.pose.orientation.z, pose.pose.orientation.w = math.sin(turn), math.cos(turn)
+    send(node, vehicle, brake)
+    node.publish(Message(START, types.message(START.type, pose=pose)))
+    send(node, vehicle, brake)
+    away = vehicle.get_transform().location.distance(start.location)
+    yield f"/initialpose: the vehicle stands {away:.2f} m from the pose"
+    if away > 2.0:
+        wrong.append(f"/initialpose put the vehicle {away:.1f} m from the pose")
     yield ""
     yield "| command | speed before, m/s | speed after, m/s | driven, m | turned, deg (positive to the left) |"
     yield "|---|---|---|---|---|"
@@ -401,30 +415,21 @@ def driven(node: Ros2Node, vehicle: carla.Vehicle, wrong: list[str]) -> Iterator
     send(node, vehicle, Command("no number", math.nan, 0.0, 0.0, 1.0))
     control = vehicle.get_control()
     yield f"accelerator nan for 1 s: the server has the throttle {control.throttle:g}"
-    brake, start = DRIVE[-1], vehicle.get_world().get_map().get_spawn_points()[3]
-    types = node.types
-    pose = types.message("geometry_msgs/msg/PoseWithCovariance")
-    pose.pose.position.x, pose.pose.position.y = start.location.x, -start.location.y
-    pose.pose.position.z = start.location.z
-    turn = -math.radians(start.rotation.yaw) / 2.0
-    pose.pose.orientation.z, pose.pose.orientation.w = math.sin(turn), math.cos(turn)
-    send(node, vehicle, brake)
-    node.publish(Message(START, types.message(START.type, pose=pose)))
-    send(node, vehicle, brake)
-    away = vehicle.get_transform().location.distance(start.location)
-    yield f"/initialpose: the vehicle stands {away:.2f} m from the pose"
-    if away > 2.0:
-        wrong.append(f"/initialpose put the vehicle {away:.1f} m from the pose")
 
 
 def send(node: Ros2Node, vehicle: carla.Vehicle, command: Command) -> None:
     """Publish a command for its time in the simulation."""
     world = vehicle.get_world()
-    began_s = world.get_snapshot().timestamp.elapsed_seconds
+    began_s, sent = world.get_snapshot().timestamp.elapsed_seconds, 0
     until_s = time.monotonic() + LONG_S
-    while world.get_snapshot().timestamp.elapsed_seconds - began_s < command.lasts_s and time.monotonic() < until_s:
-        node.publish(actuation(node, command))
-        time.sleep(STEP_S / 2.0)
+    while time.monotonic() < until_s:
+        now = world.get_snapshot().timestamp
+        if now.elapsed_seconds - began_s >= command.lasts_s:
+            return
+        if now.frame != sent:  # the node steers straight on if a second command comes within a frame
+            node.publish(actuation(node, command))
+            sent = now.frame
+        time.sleep(STEP_S / 10.0)
 
 
 def actuation(node: Ros2Node, command: Command) -> Message:
