@@ -164,7 +164,7 @@ def _normalised(lens: object, u_px: NDArray[np.float64], v_px: NDArray[np.float6
 
 
 def _padded(values: Sequence[float], count: int) -> list[float]:
-    """Return coefficients, with zeros for those that are not given."""
+    """Return coefficients, with zeros for missing ones."""
     return [*values, *[0.0] * (count - len(values))]
 
 

@@ -86,7 +86,7 @@ class SceneRenderer:
         """Return the (H, W, 3) pictures, red first, of one moment of a scene.
 
         Args:
-            scene: whose map and actors are shown.
+            scene: has the map and the actors that are shown.
             views: cameras and lenses; all are taken in one step of the simulation.
             objects: the middles of the actors' boxes by track; all other actors of the scene are away.
 
@@ -178,7 +178,7 @@ class SceneRenderer:
         return [_pixels(measured[str(number)][1]) for number in range(len(shots))]
 
     def _spawn_cameras(self, shots: Sequence[_Shot]) -> None:
-        """Put cameras of these kinds in the place of those that are there; each camera costs time in each step."""
+        """Replace the present cameras by cameras of these kinds; each camera costs time in each step."""
         self._streams.stop()
         self._simulator.client.apply_batch_sync([carla.command.DestroyActor(each.id) for _, each in self._cameras])
         self._cameras = []

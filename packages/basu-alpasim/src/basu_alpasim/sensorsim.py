@@ -76,7 +76,7 @@ class SensorsimService:
         self._lenses: dict[bytes, Faces] = {}
 
     def get_version(self, _request: Empty) -> VersionId:
-        """Return the version of the distribution, and that of AlpaSim's protocol whose messages it has."""
+        """Return the version of the distribution, and the version of AlpaSim's protocol that its messages have."""
         answer = VersionId(version_id=f"basu-alpasim {version('basu-alpasim')}", git_hash=ALPASIM_REV)
         answer.grpc_api_version.CopyFrom(ALPASIM_API_VERSION)
         return answer
@@ -229,7 +229,7 @@ class SensorsimService:
 
 
 def _invalid(sentence: str) -> RefusedError:
-    """Return the refusal of a request whose values cannot be used."""
+    """Return the refusal of a request with values that cannot be used."""
     return RefusedError(grpc.StatusCode.INVALID_ARGUMENT, sentence)
 
 
