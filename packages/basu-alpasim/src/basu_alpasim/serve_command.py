@@ -58,8 +58,8 @@ def add_serve(serve: argparse.ArgumentParser) -> None:
 def _add_sensorsim(sensorsim: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu serve sensorsim``."""
     sensorsim.description = (
-        "Offer finished runs as scenes of AlpaSim's sensorsim protocol until Ctrl-C. A scene has the run's map, trajectory, "
-        "cameras and other actors. AlpaSim asks for pictures from any pose."
+        "Offer finished runs as scenes of AlpaSim's sensorsim protocol until Ctrl-C. A scene has the run's map, "
+        "trajectory, cameras and other actors. AlpaSim asks for pictures from any pose."
     )
     sensorsim.add_argument(
         "runs", nargs="+", type=Path, metavar="RUN", help="a run's folder; its name is the scene's id"
