@@ -23,6 +23,7 @@ from carla_driver_interface.service import EgodriverServicer
 
 GOOD = 2  # answers before the failure: the third request is that of 0.2 s
 LATE_S = 30.0
+FLOOD = 100_000  # poses of an answer
 
 
 class FailingServicer(EgodriverServicer):
@@ -89,8 +90,16 @@ def ending(response: DriveResponse) -> None:
     response.terminate_session = True
 
 
+def flooding(response: DriveResponse) -> None:
+    """A pose each microsecond of the next 0.1 s."""
+    poses, first = response.trajectory.poses, response.trajectory.poses[-1]
+    response.trajectory.poses.extend([first] * FLOOD)
+    for number, pose in enumerate(poses):
+        pose.timestamp_us = poses[0].timestamp_us + number
+
+
 SPOILS: dict[str, Callable[[DriveResponse], None]] = {
-    each.__name__: each for each in (nan, empty, stale, late, raising, ending)
+    each.__name__: each for each in (nan, empty, stale, late, raising, ending, flooding)
 }
 
 

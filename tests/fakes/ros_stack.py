@@ -12,6 +12,7 @@ from linden_ros2.topic import CLOCK, Message, control_of
 
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0
+FLOOD = 300  # commands for a frame
 SELDOM_S = 0.35  # of simulated time, between two commands of a loop that misses turns
 UNLOCALISED_S = 1.4  # of the clock, which begins at 1 s: before it a localisation has no map
 
@@ -49,7 +50,7 @@ def main(kind: str, generation: str = "ros2") -> None:
     seen, told = odometry_of("hero"), control_of("hero")
     node.listen(seen)
     node.announce(told)
-    given = 0
+    given, stamp = 0, None
     while node.wait(seen, LONGEST_S):
         for odometry in node.received(seen):
             given += 1
@@ -58,9 +59,12 @@ def main(kind: str, generation: str = "ros2") -> None:
             if given > GOOD and kind == "stalls":
                 continue
             throttle = float("nan") if given > GOOD and kind == "nan" else 0.5
-            stamp = odometry.header.stamp
+            if kind != "stale" or given <= GOOD:
+                stamp = odometry.header.stamp
             header = node.types.message("std_msgs/msg/Header", stamp=stamp)
-            node.publish(Message(told, node.types.message(told.type, header=header, throttle=throttle)))
+            message = Message(told, node.types.message(told.type, header=header, throttle=throttle))
+            for _ in range(FLOOD if kind == "floods" else 1):
+                node.publish(message)
 
 
 if __name__ == "__main__":

@@ -111,6 +111,11 @@ def test_basic_behind_the_protocol_keeps_to_the_route(at: Any) -> None:
         ("nan", "AgentInvalidControl", "answered drive at 0.20 s with y = nan in pose 3"),
         ("empty", "AgentInvalidControl", "answered drive at 0.20 s with an empty trajectory"),
         ("stale", "AgentInvalidControl", "answered drive at 0.20 s with a trajectory that ends at 0.00 s"),
+        (
+            "flooding",
+            "AgentInvalidControl",
+            "answered drive at 0.20 s with a trajectory of 100041 poses; at most 10000",
+        ),
         ("late", "AgentTimedOut", "did not answer drive at 0.20 s within the limit"),
         ("raising", "AgentCrashed", "refused drive at 0.20 s: UNKNOWN: Exception calling application: no weights"),
         ("ending", "AgentCrashed", "ended the session with its answer to drive at 0.20 s"),

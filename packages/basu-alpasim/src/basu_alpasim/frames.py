@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import carla
 import numpy as np
 from carla_driver_interface.geometry import Pose, body_to_optical
 from carla_driver_interface.protocol import DynamicState, Vec3
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
     from basu.agents.sensor_file import SensorSpec
     from basu.records.motion import VehicleMotion
+
+UPRIGHT = 1.0 - 1e-9  # the sine of a pitch from which yaw and roll cannot be told apart
 
 
 def pose_of(
@@ -81,3 +84,16 @@ def _vec3(values: NDArray[np.float64]) -> Vec3:
     """Return three numbers as a message."""
     x, y, z = values.tolist()
     return Vec3(x=x, y=y, z=z)
+
+
+def transform_of(pose: Pose) -> carla.Transform:
+    """Return a pose of right-handed axes (x forward, y left, z up) in CARLA's axes; the inverse of `pose_of`."""
+    turn = pose.rotation_matrix
+    pitch = -math.asin(max(-1.0, min(1.0, -float(turn[2, 0]))))
+    if abs(turn[2, 0]) < UPRIGHT:
+        yaw, roll = -math.atan2(turn[1, 0], turn[0, 0]), math.atan2(turn[2, 1], turn[2, 2])
+    else:  # it looks straight up or down, and yaw and roll are the same turn
+        yaw, roll = -math.atan2(-turn[0, 1], turn[1, 1]), 0.0
+    x_m, y_m, z_m = pose.position.tolist()
+    angles = {"pitch": math.degrees(pitch), "yaw": math.degrees(yaw), "roll": math.degrees(roll)}
+    return carla.Transform(carla.Location(x_m, -y_m, z_m), carla.Rotation(**angles))

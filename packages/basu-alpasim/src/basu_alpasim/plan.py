@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 BEYOND_M = 15.0  # a path goes straight on this far beyond both ends of a trajectory, for lateral errors and previews
 SAME_M = 0.02  # points that lie nearer together than this have no direction
+MOST_POSES = 10_000  # of an answer; AlpaSim's policies give some 60
 LEAST_QUATERNION = 1e-3  # the length of one that still is a direction
 
 
@@ -43,6 +44,10 @@ def read_plan(response: DriveResponse, now_us: int, rear_axle_m: float) -> list[
         raise AgentInvalidControlError(
             f"the policy answered {at} with an empty trajectory; one that wants to stand answers with its present pose "
             "at later times"
+        )
+    if len(poses) > MOST_POSES:
+        raise AgentInvalidControlError(
+            f"the policy answered {at} with a trajectory of {len(poses)} poses; at most {MOST_POSES} are read"
         )
     planned: list[Planned] = []
     before_us = -1

@@ -32,9 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
         UserError: a route, a length or an address cannot be used.
     """
     known = Known(_body(arguments), _route(arguments), _cruise_mps(arguments.cruise), arguments.agent)
-    ended = threading.Event()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda _number, _frame: ended.set())
+    ended = end_of_service()
     mode: ServiceMode = "alpasim" if arguments.alpasim else "carla"  # what lies in ``renderer_data``
     try:
         with serving(BasicPolicy(known), arguments.port, arguments.host, mode=mode) as port:
@@ -45,6 +43,14 @@ def run(arguments: argparse.Namespace) -> int:
             f"nothing can listen at {arguments.host}:{arguments.port} ({error}); choose another --port"
         ) from None
     return 0
+
+
+def end_of_service() -> threading.Event:
+    """Return an event that Ctrl-C and SIGTERM set."""
+    ended = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda _number, _frame: ended.set())
+    return ended
 
 
 def _body(arguments: argparse.Namespace) -> VehicleGeometry:

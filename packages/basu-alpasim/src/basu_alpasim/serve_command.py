@@ -1,4 +1,4 @@
-"""Arguments of ``basu serve egodriver``."""
+"""Arguments of ``basu serve egodriver`` and ``basu serve sensorsim``."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ LENGTHS = (
 """Of CARLA's vehicle.tesla.model3, rounded; its origin is midway between the axles."""
 AGENTS = ("basic", "behavioral", "behavioral-cautious", "behavioral-aggressive", "blind", "creeper")
 """The keys of ``basu_alpasim.basic_policy.OFFERED``, which is slow to import; a test compares them."""
+RENDERER_PORT = 50052
 PORT = 50051  # of carla-driver-interface and of AlpaSim's own driver
 
 
@@ -49,6 +50,39 @@ def add_serve(serve: argparse.ArgumentParser) -> None:
     for name, value, what in LENGTHS:
         lengths.add_argument(name, type=float, default=value, metavar="M", help=f"{what} (default: %(default)s)")
     egodriver.set_defaults(command=later("basu_alpasim.serve:run"))
+    _add_sensorsim(
+        protocols.add_parser("sensorsim", help="offer finished runs to AlpaSim, which asks for pictures of them")
+    )
 
 
-SERVE = Command("offer an agent to another simulator", add_serve)
+def _add_sensorsim(sensorsim: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu serve sensorsim``."""
+    sensorsim.description = (
+        "Offer finished runs as scenes of AlpaSim's sensorsim protocol until Ctrl-C. A scene has the run's map, "
+        "trajectory, cameras and other actors. AlpaSim asks for pictures from any pose."
+    )
+    sensorsim.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN", help="a run's folder; its name is the scene's id"
+    )
+    sensorsim.add_argument("--host", default="127.0.0.1", metavar="HOST", help="where to listen (default: %(default)s)")
+    sensorsim.add_argument(
+        "--port", type=int, default=RENDERER_PORT, metavar="N", help="0: a free one (default: %(default)s)"
+    )
+    sensorsim.add_argument(
+        "--sensors",
+        type=Path,
+        metavar="FILE.json",
+        help="the cameras that a scene declares (default: one of 120 degrees)",
+    )
+    sensorsim.add_argument(
+        "--simulator", metavar="HOST:PORT", help="a running simulator that nothing else uses (default: starts one)"
+    )
+    sensorsim.add_argument(
+        "--timeout", type=float, default=120.0, metavar="S", help="wall time for a picture (default: %(default)s)"
+    )
+    name, value, what = LENGTHS[1]
+    sensorsim.add_argument(name, type=float, default=value, metavar="M", help=f"{what} (default: %(default)s)")
+    sensorsim.set_defaults(command=later("basu_alpasim.serve_scenes:run"))
+
+
+SERVE = Command("offer an agent or a renderer to another simulator", add_serve)

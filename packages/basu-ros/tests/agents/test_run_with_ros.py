@@ -50,7 +50,12 @@ def test_a_follower_drives_along_the_route(
 @pytest.mark.parametrize(
     ("kind", "status", "says"),
     [
-        ("nan", "AgentInvalidControl", "commands throttle = nan; it must be a finite number"),
+        (
+            "nan",
+            "AgentInvalidControl",
+            "/carla/hero/vehicle_control_cmd at 0.25 s: the ROS software commands throttle = nan; it must be a finite",
+        ),
+        ("stale", "AgentTimedOut", "frame 5 (0.25 s) (the last one that came has the earlier time 0.20 s) within the"),
         ("dies", "AgentTimedOut", "the ROS 2 software left the domain"),
         ("stalls", "AgentTimedOut", "within the limit of a step; it is still there"),
     ],
@@ -60,6 +65,29 @@ def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
 ) -> None:
     starts(STACK, kind)
     has_failed(run("ros", simulator, route_file, tmp_path, "--step-limit", "5"), status, says)
+
+
+def test_software_that_floods_its_topic_drives_all_the_same(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    """300 commands a frame: the newest one of the frame's time counts, and the run is not held up."""
+    starts(STACK, "floods")
+    _, result, folder = run("ros", simulator, route_file, tmp_path, "--stop-after", "3")
+    assert result["status"] == "Stopped", result["message"]
+    assert read_history(folder).frames["throttle"][-1] == 0.5
+    assert len(read_history(folder).frames) == 61
+
+
+def test_a_stack_that_asks_for_a_sensor_that_does_not_exist_gets_its_name(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "sensors.json"
+    file.write_text('[{"type": "sensor.lidar.of_glass", "id": "top", "x": 0.0, "z": 2.0}]')
+    monkeypatch.setattr(RosAgent, "config", lambda _self: {"sensors": str(file)})
+    starts(STACK, "good")
+    code, result, _ = run("ros", simulator, route_file, tmp_path)
+    assert code != 0
+    assert "sensor.lidar.of_glass" in result["message"]
 
 
 def test_two_drivers_at_one_wheel_are_refused(

@@ -16,7 +16,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.builtin.perception import SHUTTLE, read_facts
 from basu.agents.calls import SETUP_LIMIT_S, OverrunError
 from basu.agents.sensor_file import read_sensors
-from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
+from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, UserError
 from basu.files import find
 from basu_ros.agents.commands import AckermannControl, Wanted, ackermann_command, carla_command
 from basu_ros.agents.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
@@ -208,12 +208,15 @@ class LockstepAgent(AutonomousAgent):
         Raises:
             AgentTimedOutError: it does not come within the limit of a step.
         """
+        stale: Any = None  # the last command of an earlier time
         try:
             while True:
                 for topic in self.commands():
-                    fresh = [each for each in self.node.received(topic) if self.belongs(each, moment)]
+                    heard = self.node.received(topic)
+                    fresh = [each for each in heard if self.belongs(each, moment)]
                     if fresh:
-                        return self.wanted(topic, fresh[-1])
+                        return self._read(topic, fresh[-1], moment)
+                    stale = heard[-1] if heard else stale
                 if not any(self.node.writers_of(topic) for topic in self.commands()):
                     raise AgentTimedOutError(
                         f"the {self.node.kind} software left {self.node.realm} before it answered frame "
@@ -225,11 +228,23 @@ class LockstepAgent(AutonomousAgent):
                 self.node.wait_any(self.commands(), self.slice_s)
         except OverrunError:
             names = " or ".join(topic.name for topic in self.commands())
+            late = "" if stale is None else f" (the last one that came has the earlier time {_stamp_s(stale):.2f} s)"
             raise AgentTimedOutError(
                 f"the {self.node.kind} software gave no command on {names} for frame {moment.frame} ({moment.t_s:.2f} "
-                "s) within the limit of a step; it is still there: see its own output, or give it more with "
+                f"s){late} within the limit of a step; it is still there: see its own output, or give it more with "
                 "--step-limit"
             ) from None
+
+    def _read(self, topic: Topic, message: Any, moment: Moment) -> Wanted | carla.VehicleControl:  # noqa: ANN401
+        """Return what a command says.
+
+        Raises:
+            AgentInvalidControlError: it holds what is no number; the text has the topic and the time.
+        """
+        try:
+            return self.wanted(topic, message)
+        except AgentInvalidControlError as error:
+            raise AgentInvalidControlError(f"{topic.name} at {moment.t_s:.2f} s: {error}") from None
 
     def _control(self, wanted: Wanted | carla.VehicleControl, moment: Moment) -> carla.VehicleControl:
         """A command as CARLA's control."""
@@ -245,9 +260,19 @@ class LockstepAgent(AutonomousAgent):
 
 def is_answer(message: Any, t_s: float) -> bool:  # noqa: ANN401 - a message
     """Return whether a command has the time ``t_s`` of a frame or a later one, or no time at all."""
-    header = getattr(message, "header", message)
-    stamp = getattr(header, "stamp", None)
+    stamp = _stamp(message)
     if stamp is None:
         return True
     stamped_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
     return bool(stamped_ns == 0 or stamped_ns >= nanoseconds(t_s))
+
+
+def _stamp(message: Any) -> Any:  # noqa: ANN401 - messages
+    """Return the stamp of a command, in its header or without one; None for a type without a stamp."""
+    return getattr(getattr(message, "header", message), "stamp", None)
+
+
+def _stamp_s(message: Any) -> float:  # noqa: ANN401 - a message
+    """Return the stamp of a command that has one, in s."""
+    stamp = _stamp(message)
+    return float(stamp.sec + 1e-9 * stamp.nanosec)
