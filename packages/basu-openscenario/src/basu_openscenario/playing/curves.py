@@ -325,7 +325,11 @@ def _spline(shape: ClothoidSplineSpec, place_of: Callable[[Position], Place], he
 
 
 class NurbsPoint(NamedTuple):
-    """A point of a NURBS curve: m and rad; the angles and the height are mixed from those of the control points."""
+    """A point of a NURBS curve: m and rad.
+
+    The height is mixed from those of the control points. The standard has no rule for angles; they are mixed as esmini
+    mixes them, each control point turning what the ones before it gave by its share.
+    """
 
     x_m: float
     y_m: float
