@@ -11,6 +11,8 @@ esmini draws the way at a junction by its seed, and BASU takes the straightest o
 compared with the draws of several seeds, and the nearest one counts.
 """
 
+from __future__ import annotations
+
 import argparse
 import collections
 import csv
@@ -22,12 +24,15 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.errors import BasuError
 from basu_openscenario.playing.at_once import ControllerActivation, ControllerAssignment
 from basu_openscenario.playing.player import Change, Frame, Player, make_player
 from basu_openscenario.reading.scenario_file import read_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 CLOSE_M, CLOSE_RAD = 0.01, 0.001
 SEEDS = tuple(range(1, 9))
@@ -73,14 +78,17 @@ class Judged(NamedTuple):
 
 
 def esmini_log(
-    program: Path, file: Path, step_s: float, seed: int = SEEDS[0]
+    program: Path, file: Path, step_s: float, seed: int = SEEDS[0], more: Sequence[str] = ()
 ) -> tuple[dict[int, dict[str, Row]], list[tuple[float, str, str]], float]:
-    """Return esmini's poses by step and entity, its changes of state, and its wall time in s."""
+    """Return esmini's poses by step and entity, its changes of state, and its wall time in s.
+
+    ``more`` are further options of esmini.
+    """
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
         command = [str(program), "--headless", "--osc", str(file), "--fixed_timestep", str(step_s)]
         command += ["--csv_logger", "poses.csv", "--disable_controllers", "--path", str(file.parent)]
-        command += ["--seed", str(seed)]
+        command += ["--seed", str(seed), *more]
         limit = (LARGEST_LOG, LARGEST_LOG)
         try:
             done = subprocess.run(
