@@ -59,7 +59,8 @@ one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `
   log-normal, uniform and Poisson distribution, a histogram, and values with weights. Each parameter has a generator
   of its own.
 - `expectedValue` and `variance` of a log-normal distribution are its own moments, not those of the logarithm.
-- A file may have up to 10,000 runs.
+- A file may have up to 10,000 runs. Runs outside the constraints of the scenario are left out, and `basu scenario list`
+  says how many.
 
 ## Cases for other players
 
