@@ -39,6 +39,20 @@ SEEDS = tuple(range(1, 9))
 """The seeds of esmini whose draws are tried, until the file agrees."""
 LARGEST_LOG = 200 * 1024 * 1024
 """Bytes that esmini may write: a scenario without an end goes on until then."""
+HEAD = """# Files that esmini judges
+
+<!-- written by scripts/outside/esmini_compare.py, which needs esmini -->
+
+The kinematic mode and esmini 3.6.0 play the same files in steps of 10 ms. The table has the greatest distance and angle over
+all entities and steps, the number of changes of state, and the greatest difference of one in steps. A file agrees within
+1 cm, 1 mrad and the same step. The last column has the entity and the time of the first difference, or the refusal.
+[The decision](../decisions/0127-esmini.md) has the causes of the differences.
+
+{files} files: {played} played, {agreed} agree; {times}.
+
+| file | result | distance, mm | angle, mrad | events, steps | where, or why |
+|---|---|---|---|---|---|
+"""
 _CHANGE = re.compile(r"\[(-?[\d.]+)\] \[info\] (.*?) (\w+State) -> (\w+Transition) -> (\w+State)")
 _HEADER = re.compile(r"#(\d+) (\w+)")
 
@@ -265,7 +279,7 @@ def main() -> int:
     print(f"{len(results)} files, {len(played)} played, {len(agreed)} agree; {times}")
     if arguments.table is not None:
         rows = [_table_row(file, judged) for file, judged in results]
-        head = "| file | result | distance, mm | angle, mrad | events, steps | why |\n|---|---|---|---|---|---|\n"
+        head = HEAD.format(files=len(results), played=len(played), agreed=len(agreed), times=times)
         arguments.table.write_text(head + "".join(rows), encoding="utf-8")
     return 0
 
