@@ -87,8 +87,8 @@ $ esmini --osc case.xosc --traj_filter 0 --window 60 60 800 400
 
 What has no counterpart is refused by its name, and the other cases are written. These are disturbances of the ego's
 controls, friction of a part of the road and open doors. Triggers of a user's own class are refused as well.
-The page of [exported cases](exported-cases.md) has their number, and the distances to esmini. Without `--traj_filter 0`,
-esmini merges points of a trajectory within 5 cm, and an actor that starts slowly can be 0.6 m off.
+The page of [exported cases](exported-cases.md) has their number, and the distances to esmini. Without `--traj_filter 0`
+esmini merges points of a trajectory within 5 cm. An actor that starts slowly can then be 0.6 m off.
 [The decision](../decisions/0129-export-of-cases.md) has the reasons.
 
 ## What is supported

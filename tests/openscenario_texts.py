@@ -109,7 +109,8 @@ def scenario(
     """Return the text of a file; by default the ego drives along the straight road for ten seconds."""
     return f"""<?xml version="1.0"?>
 <OpenSCENARIO>
-  <FileHeader revMajor="{revision[0]}" revMinor="{revision[1]}" date="2026-01-01T00:00:00" author="" description="a test"/>
+  <FileHeader revMajor="{revision[0]}" revMinor="{revision[1]}" date="2026-01-01T00:00:00" author=""
+    description="a test"/>
   <ParameterDeclarations>{parameters}</ParameterDeclarations>
   <CatalogLocations>{catalogs}</CatalogLocations>
   <RoadNetwork><LogicFile filepath="{road}"/></RoadNetwork>

@@ -43,9 +43,9 @@ HEAD = """# Files that esmini judges
 
 <!-- written by scripts/outside/esmini_compare.py, which needs esmini -->
 
-The kinematic mode and esmini 3.6.0 play the same files in steps of 10 ms. The table has the greatest distance and angle over
-all entities and steps, the number of changes of state, and the greatest difference of one in steps. A file agrees within
-1 cm, 1 mrad and the same step. The last column has the entity and the time of the first difference, or the refusal.
+The kinematic mode and esmini 3.6.0 play the same files in steps of 10 ms. Distance and angle are the greatest ones over
+all entities and steps. The events are changes of state that both have, with the greatest difference in steps. A file
+agrees within 1 cm, 1 mrad and the same step. The last column has the first difference, or the refusal.
 [The decision](../decisions/0127-esmini.md) has the causes of the differences.
 
 {files} files: {played} played, {agreed} agree; {times}.

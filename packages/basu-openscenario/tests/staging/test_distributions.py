@@ -156,7 +156,7 @@ def test_runs_outside_the_constraints_are_left_out_and_counted(tmp_path: Path) -
 
 
 @pytest.mark.usefixtures("plugin")
-def test_a_distribution_whose_runs_are_all_outside_the_constraints_is_refused(tmp_path: Path) -> None:
+def test_a_distribution_without_a_run_inside_the_constraints_is_refused(tmp_path: Path) -> None:
     one = single("speed", '<DistributionSet><Element value="-5"/></DistributionSet>')
     with pytest.raises(ScenarioError, match=r"many\.xosc: the constraints of .* allow none of the 1 runs"):
         values(tmp_path, f"<Deterministic>{one}</Deterministic>")

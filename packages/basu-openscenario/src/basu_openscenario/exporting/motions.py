@@ -110,7 +110,7 @@ def at_rest(trail: NDArray[np.float64]) -> tuple[NDArray[np.float64], list[int]]
     rests = np.concatenate([[False], trail[:, 3] < AT_REST_MPS, [False]])
     changes = np.flatnonzero(rests[1:] != rests[:-1])
     for first, end in zip(changes[::2], changes[1::2], strict=True):
-        trail[first:end, :3] = trail[end - 1, :3]
+        trail[first:end, :3] = trail[first, :3]  # its end would be reached by a jump, faster than the motion before
         marks += [int(first), int(end) - 1]
     return trail, marks
 
@@ -120,8 +120,8 @@ def thinned(points: NDArray[np.float64], rests: Sequence[int] = (), moments: Seq
 
     A motion that stays where it is has no points but its first. See Douglas and Peucker 1973, with time as the axis.
     Points near a rest are left out, since esmini merges points within 5 cm and would let it begin or end at others. A
-    moment shortly before a rest is kept: without it the way into the rest has one speed, and a trigger that waits for a
-    low speed comes late. esmini then lets the rest begin at that moment.
+    moment shortly before a rest is kept. Without it the way into the rest has one speed. A trigger that waits for
+    a low speed then comes late. esmini then lets the rest begin at that moment.
 
     Args:
         points: (N, 4) s, x and y in m, yaw in rad.

@@ -68,7 +68,7 @@ MAKERS: dict[type, Callable[..., RunningAction]] = {
 
 
 def private_action(name: str, world: World, mover: Mover, action: actions.PrivateAction, line: str) -> RunningAction:
-    """Return a private action at work, whose errors begin with its file and line."""
+    """Return a private action at work; its errors begin with its file and line."""
     try:
         made = MAKERS[type(action)](name, world, mover, action)
     except ScenarioError as error:

@@ -63,7 +63,7 @@ class Mover:
     before: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """x, y, z and heading at the end of the step before."""
     rear_m: tuple[float, float] | None = None
-    """The rear axle of a vehicle whose reference point is elsewhere; None: as its pose has it."""
+    """The rear axle of a vehicle with its reference point elsewhere; None: as its pose has it."""
 
     def __post_init__(self) -> None:
         """Put the rear axle where the entity begins."""

@@ -101,7 +101,7 @@ def check_type(node: Node, name: str, value: str, kind: str) -> None:
 
 
 def within_constraints(root: Node, runs: Sequence[Mapping[str, str]]) -> list[Mapping[str, str]]:
-    """Return the runs whose values fulfil the constraints of the parameters that a scenario declares.
+    """Return the runs with values that fulfil the constraints of the parameters that a scenario declares.
 
     Args:
         root: of the scenario.

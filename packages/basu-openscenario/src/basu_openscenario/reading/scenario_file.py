@@ -160,7 +160,7 @@ def _signal_controllers(network: Node) -> tuple[SignalController, ...]:
 
 
 def _check_reference(node: Node, references: dict[str, str]) -> None:
-    """Refuse a controller of signals whose references lead to none, or in a circle."""
+    """Refuse a controller of signals if its references lead to none, or in a circle."""
     name = node.text("name")
     seen = [name]
     while reference := references[seen[-1]]:
