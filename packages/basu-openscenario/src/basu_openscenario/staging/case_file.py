@@ -36,7 +36,7 @@ def read_case_file(path: Path) -> CaseFile:
     path = path.resolve()
     distribution = read_distribution(path)
     file = path if distribution is None else distribution.scenario
-    runs = ({},) if distribution is None else distribution.runs
+    runs: Sequence[Assignment] = ({},) if distribution is None else distribution.runs
     scenario = read_scenario(file)
     _check_runs(runs, scenario, path)
     runs, left_out = _allowed(runs, file, path)
