@@ -59,7 +59,8 @@ one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `
   log-normal, uniform and Poisson distribution, a histogram, and values with weights. Each parameter has a generator
   of its own.
 - `expectedValue` and `variance` of a log-normal distribution are its own moments, not those of the logarithm.
-- A file may have up to 10,000 runs.
+- A file may have up to 10,000 runs. Runs outside the constraints of the scenario are left out, and `basu scenario list`
+  says how many.
 
 ## Cases for other players
 
@@ -70,7 +71,7 @@ With `--for scenario-runner`, it writes the case for [ScenarioRunner](../how-to/
 ```console
 $ basu scenario export pedestrian_crossing_1 -o case.xosc
 $ basu scenario export all -o exported
-$ esmini --osc case.xosc --window 60 60 800 400
+$ esmini --osc case.xosc --traj_filter 0 --window 60 60 800 400
 ```
 
 - **Triggers are conditions.** The others wait for the ego, whatever drives it. A distance along the ego's route is a
@@ -86,7 +87,8 @@ $ esmini --osc case.xosc --window 60 60 800 400
 
 What has no counterpart is refused by its name, and the other cases are written. These are disturbances of the ego's
 controls, friction of a part of the road and open doors. Triggers of a user's own class are refused as well.
-The page of [exported cases](exported-cases.md) has their number, and the distances to esmini.
+The page of [exported cases](exported-cases.md) has their number, and the distances to esmini. Without `--traj_filter 0`
+esmini merges points of a trajectory within 5 cm. An actor that starts slowly can then be 0.6 m off.
 [The decision](../decisions/0129-export-of-cases.md) has the reasons.
 
 ## What is supported
@@ -94,7 +96,7 @@ The page of [exported cases](exported-cases.md) has their number, and the distan
 Words of the tables:
 
 - played: the simulator plays it.
-- kinematic: only the kinematic mode plays it. `scripts/outside/esmini_compare.py` compares that mode with esmini.
+- kinematic: only the kinematic mode plays it. [A table](esmini-files.md) compares that mode with esmini, file by file.
 - noted: the storyboard and its conditions know it, and the simulator does not show it.
 - refused: a file with it is refused by this name.
 """

@@ -32,7 +32,8 @@ ROAD = """<?xml version="1.0"?>
 VEHICLE = """<Vehicle name="{model}" vehicleCategory="car">
   <BoundingBox><Center x="1.4" y="0" z="0.9"/><Dimensions width="1.8" length="4.4" height="1.6"/></BoundingBox>
   <Performance maxSpeed="60" maxAcceleration="10" maxDeceleration="10"/>
-  <Axles><RearAxle maxSteering="0" wheelDiameter="0.6" trackWidth="1.6" positionX="0" positionZ="0.3"/></Axles>
+  <Axles><FrontAxle maxSteering="0.5" wheelDiameter="0.6" trackWidth="1.6" positionX="2.7" positionZ="0.3"/>
+    <RearAxle maxSteering="0" wheelDiameter="0.6" trackWidth="1.6" positionX="0" positionZ="0.3"/></Axles>
   <Properties/>
 </Vehicle>"""
 
@@ -108,7 +109,8 @@ def scenario(
     """Return the text of a file; by default the ego drives along the straight road for ten seconds."""
     return f"""<?xml version="1.0"?>
 <OpenSCENARIO>
-  <FileHeader revMajor="{revision[0]}" revMinor="{revision[1]}" date="2026-01-01" author="" description="a test"/>
+  <FileHeader revMajor="{revision[0]}" revMinor="{revision[1]}" date="2026-01-01T00:00:00" author=""
+    description="a test"/>
   <ParameterDeclarations>{parameters}</ParameterDeclarations>
   <CatalogLocations>{catalogs}</CatalogLocations>
   <RoadNetwork><LogicFile filepath="{road}"/></RoadNetwork>

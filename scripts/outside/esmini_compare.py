@@ -6,7 +6,12 @@ Each file gets a line: played or refused and why, the greatest distance and angl
 greatest difference of the same change of state in steps. A file counts as agreed within 1 cm, 1 mrad and no step.
 Controllers are off in both: all entities play as the file is written. esmini then leaves out the actions that assign or
 activate one, so that their changes of state do not count here.
+
+esmini draws the way at a junction by its seed, and BASU takes the straightest one. A file that differs is therefore
+compared with the draws of several seeds, and the nearest one counts.
 """
+
+from __future__ import annotations
 
 import argparse
 import collections
@@ -19,16 +24,35 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.errors import BasuError
 from basu_openscenario.playing.at_once import ControllerActivation, ControllerAssignment
 from basu_openscenario.playing.player import Change, Frame, Player, make_player
 from basu_openscenario.reading.scenario_file import read_scenario
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 CLOSE_M, CLOSE_RAD = 0.01, 0.001
+SEEDS = tuple(range(1, 9))
+"""The seeds of esmini whose draws are tried, until the file agrees."""
 LARGEST_LOG = 200 * 1024 * 1024
 """Bytes that esmini may write: a scenario without an end goes on until then."""
+HEAD = """# Files that esmini judges
+
+<!-- written by scripts/outside/esmini_compare.py, which needs esmini -->
+
+The kinematic mode and esmini 3.6.0 play the same files in steps of 10 ms. Distance and angle are the greatest ones over
+all entities and steps. The events are changes of state that both have, with the greatest difference in steps. A file
+agrees within 1 cm, 1 mrad and the same step. The last column has the first difference, or the refusal.
+[The decision](../decisions/0127-esmini.md) has the causes of the differences.
+
+{files} files: {played} played, {agreed} agree; {times}.
+
+| file | result | distance, mm | angle, mrad | events, steps | where, or why |
+|---|---|---|---|---|---|
+"""
 _CHANGE = re.compile(r"\[(-?[\d.]+)\] \[info\] (.*?) (\w+State) -> (\w+Transition) -> (\w+State)")
 _HEADER = re.compile(r"#(\d+) (\w+)")
 
@@ -68,13 +92,17 @@ class Judged(NamedTuple):
 
 
 def esmini_log(
-    program: Path, file: Path, step_s: float
+    program: Path, file: Path, step_s: float, seed: int = SEEDS[0], more: Sequence[str] = ()
 ) -> tuple[dict[int, dict[str, Row]], list[tuple[float, str, str]], float]:
-    """Return esmini's poses by step and entity, its changes of state, and its wall time in s."""
+    """Return esmini's poses by step and entity, its changes of state, and its wall time in s.
+
+    ``more`` are further options of esmini.
+    """
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
         command = [str(program), "--headless", "--osc", str(file), "--fixed_timestep", str(step_s)]
         command += ["--csv_logger", "poses.csv", "--disable_controllers", "--path", str(file.parent)]
+        command += ["--seed", str(seed), *more]
         limit = (LARGEST_LOG, LARGEST_LOG)
         try:
             done = subprocess.run(
@@ -143,13 +171,23 @@ def compare(program: Path, file: Path, step_s: float, longest_s: float) -> Judge
     except BasuError as error:
         return Judged(played=False, why=str(error).replace(f"{file.parent}/", ""))
     own_s = time.perf_counter() - began
-    rows, changes, esmini_s = esmini_log(program, file, step_s)
-    if not rows:
-        return Judged(played=True, why="esmini wrote no poses", own_s=own_s, esmini_s=esmini_s)
-    distance_m, angle_rad, where = _apart(frames, rows, step_s)
-    events, steps, lost = _events(_without_controllers(player), changes, step_s, longest_s)
-    ends = frames[-1].time_s, min(max(rows) * step_s, longest_s)
-    return Judged(True, "", distance_m, angle_rad, where, events, steps, lost, own_s, esmini_s, *ends)
+    best: Judged | None = None
+    drawn: set[float] = set()
+    for seed in SEEDS:
+        rows, changes, esmini_s = esmini_log(program, file, step_s, seed)
+        if not rows:
+            return Judged(played=True, why="esmini wrote no poses", own_s=own_s, esmini_s=esmini_s)
+        distance_m, angle_rad, where = _apart(frames, rows, step_s)
+        events, steps, lost = _events(_without_controllers(player), changes, step_s, longest_s)
+        ends = frames[-1].time_s, min(max(rows) * step_s, longest_s)
+        found = Judged(True, "", distance_m, angle_rad, where, events, steps, lost, own_s, esmini_s, *ends)
+        if best is None or found.distance_m < best.distance_m:
+            best = found
+        drawn.add(distance_m)
+        if best.agrees or (seed == SEEDS[2] and len(drawn) == 1):  # nothing depends on the draws
+            break
+    assert best is not None, "there is a seed"
+    return best
 
 
 def _apart(frames: list[Frame], rows: dict[int, dict[str, Row]], step_s: float) -> tuple[float, float, str]:
@@ -241,7 +279,7 @@ def main() -> int:
     print(f"{len(results)} files, {len(played)} played, {len(agreed)} agree; {times}")
     if arguments.table is not None:
         rows = [_table_row(file, judged) for file, judged in results]
-        head = "| file | result | distance, mm | angle, mrad | events, steps | why |\n|---|---|---|---|---|---|\n"
+        head = HEAD.format(files=len(results), played=len(played), agreed=len(agreed), times=times)
         arguments.table.write_text(head + "".join(rows), encoding="utf-8")
     return 0
 

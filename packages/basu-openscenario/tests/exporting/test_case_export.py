@@ -151,4 +151,13 @@ def test_an_actor_that_rests_keeps_its_place() -> None:
     trail = np.column_stack([np.cumsum(speeds_mps), 0.0 * speeds_mps, 0.0 * speeds_mps, speeds_mps])
     held, marks = at_rest(trail)
     assert marks == [1, 3]
-    assert set(held[1:4, 0]) == {trail[3, 0]}
+    assert set(held[1:4, 0]) == {trail[1, 0]}
+
+
+def test_a_moment_shortly_before_a_rest_is_kept_and_one_after_it_is_not() -> None:
+    times_s = np.arange(0.0, 4.0, 0.01)
+    ahead_m = np.where(times_s < 1.0, -((1.0 - times_s) ** 2), np.where(times_s < 3.0, 0.0, (times_s - 3.0) ** 2))
+    points = np.column_stack([times_s, ahead_m, 0.0 * times_s, 0.0 * times_s])
+    kept = thinned(points, rests=[100, 300], moments=[85, 310])[:, 0]
+    assert 0.85 in np.round(kept, 2)
+    assert 3.1 not in np.round(kept, 2)

@@ -240,3 +240,78 @@ def test_an_endless_trajectory_is_refused(tmp_path):
     <TrajectoryFollowingMode followingMode="position"/></FollowTrajectoryAction></RoutingAction>"""
     text = scenario(stories=story("Ego", event("e", shape)))
     assert "test.xosc" in refused(written(tmp_path, text))
+
+
+def play_refused(path: Path) -> str:
+    """Return the sentence with which the playing of a file ends."""
+    with pytest.raises(ScenarioError) as caught:
+        list(make_player(read_scenario(path)).play())
+    return str(caught.value)
+
+
+def test_a_place_that_does_not_exist_is_named_with_the_line_of_its_action(tmp_path):
+    elsewhere = lane_position(50).replace('roadId="1"', 'roadId="7"')
+    action = f"<TeleportAction>{elsewhere}</TeleportAction>"
+    sentence = play_refused(written(tmp_path, scenario(stories=story("Ego", event("e", action)))))
+    assert re.search(r"test\.xosc:\d+: .* has no road '7'", sentence)
+
+
+def test_a_place_that_does_not_exist_is_named_with_the_line_of_its_condition(tmp_path):
+    start = f"""<ConditionGroup><Condition name="c" delay="0" conditionEdge="none"><ByEntityCondition>
+      <TriggeringEntities triggeringEntitiesRule="any"><EntityRef entityRef="Ego"/></TriggeringEntities>
+      <EntityCondition><ReachPositionCondition tolerance="2">{lane_position(50, 9)}</ReachPositionCondition>
+      </EntityCondition></ByEntityCondition></Condition></ConditionGroup>"""
+    sentence = play_refused(written(tmp_path, scenario(stories=story("Ego", event("e", speed_action(5), start)))))
+    assert re.search(r"test\.xosc:\d+: .* has no lane 9", sentence)
+
+
+def test_a_lateral_distance_with_limits_is_refused_with_its_line(tmp_path):
+    action = """<LateralAction><LateralDistanceAction entityRef="Ego" distance="2" freespace="false" continuous="true">
+      <DynamicConstraints maxSpeed="1" maxAcceleration="1" maxDeceleration="1"/>
+    </LateralDistanceAction></LateralAction>"""
+    sentence = refused(written(tmp_path, scenario(stories=story("Ego", event("e", action)))))
+    assert re.search(r"test\.xosc:\d+: the LateralDistanceAction", sentence)
+
+
+@pytest.mark.parametrize("content", ["", "no road", "<OpenDRIVE>", "<OpenSCENARIO/>"])
+def test_a_road_network_that_is_no_road_network_is_named_with_its_line(tmp_path, content):
+    path = written(tmp_path, scenario(road="broken.xodr"))
+    (tmp_path / "broken.xodr").write_text(content, encoding="utf-8")
+    assert re.search(r"broken\.xodr:1: ", refused(path))
+
+
+def test_an_entity_bomb_in_a_road_network_is_refused_at_once(tmp_path):
+    path = written(tmp_path, scenario(road="bomb.xodr"))
+    bomb = '<!DOCTYPE a [<!ENTITY x0 "ha">' + "".join(f'<!ENTITY x{n} "{f"&x{n - 1};" * 10}">' for n in range(1, 12))
+    road = (tmp_path / "straight.xodr").read_text(encoding="utf-8")
+    text = road.replace('<?xml version="1.0"?>', f'<?xml version="1.0"?>{bomb}]>').replace('"straight"', '"&x11;"')
+    (tmp_path / "bomb.xodr").write_text(text, encoding="utf-8")
+    assert re.search(r"bomb\.xodr:\d+: ", refused(path))
+
+
+def test_an_enormous_road_network_is_refused_before_it_is_read(tmp_path, monkeypatch):
+    path = written(tmp_path, scenario(road="large.xodr"))
+    (tmp_path / "large.xodr").write_bytes(b" " * 3 * 2**20)
+    monkeypatch.setattr(xml_node, "LARGEST_FILE_BYTES", 2 * 2**20)
+    assert "large.xodr has 3 MiB; files up to 2 MiB are read" in refused(path)
+
+
+def test_a_parameter_that_is_its_own_value_is_named(tmp_path):
+    declared = '<ParameterDeclaration name="v" parameterType="double" value="$v"/>'
+    assert re.search(
+        r"test\.xosc:\d+: .*'v' is not declared here", refused(written(tmp_path, scenario(parameters=declared)))
+    )
+
+
+@pytest.mark.parametrize(
+    ("references", "words"), [({"a": "b", "b": "a"}, "go in a circle"), ({"a": "c"}, "'c', which does not exist")]
+)
+def test_controllers_of_signals_with_bad_references_are_named(tmp_path, references, words):
+    controllers = "".join(
+        f"""<TrafficSignalController name="{one}" reference="{other}" delay="1"><Phase name="p" duration="5">
+        <TrafficSignalState trafficSignalId="1" state="green"/></Phase></TrafficSignalController>"""
+        for one, other in references.items()
+    )
+    text = scenario().replace("</RoadNetwork>", f"<TrafficSignals>{controllers}</TrafficSignals></RoadNetwork>")
+    sentence = refused(written(tmp_path, text))
+    assert re.search(rf"test\.xosc:\d+: .*{words}", sentence)

@@ -122,7 +122,7 @@ def test_the_same_seed_gives_the_same_draws(tmp_path: Path) -> None:
         (drawn(f"<UniformDistribution>{RANGE}</UniformDistribution>", runs=0), "has 0 runs; give 1 to 10000"),
         (drawn(f"<UniformDistribution>{RANGE}</UniformDistribution>", name="sped"), "declares no parameter 'sped'"),
         (drawn('<NormalDistribution expectedValue="8" variance="-1"/>'), "is impossible"),
-        (drawn('<PoissonDistribution expectedValue="30"/>', runs=5), "must be a number from 0 to 20"),
+        (drawn('<PoissonDistribution expectedValue="30"/>', runs=5), "allow none of the 5 runs"),
         (
             drawn(f'<NormalDistribution expectedValue="90" variance="1">{RANGE}</NormalDistribution>'),
             "none of 10000 draws lies from 4 to 12",
@@ -144,3 +144,26 @@ def test_bad_distributions_are_refused_with_a_sentence(tmp_path: Path, inside: s
 def test_a_missing_scenario_is_named_with_its_line(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"many\.xosc:2: the scenario .*gone\.xosc does not exist"):
         values(tmp_path, drawn(f"<UniformDistribution>{RANGE}</UniformDistribution>"), file="gone.xosc")
+
+
+@pytest.mark.usefixtures("plugin")
+def test_runs_outside_the_constraints_are_left_out_and_counted(tmp_path: Path) -> None:
+    speeds_in_file = "".join(f'<Element value="{value}"/>' for value in (-5, 5, 25))
+    one = single("speed", f"<DistributionSet>{speeds_in_file}</DistributionSet>")
+    assert [found["speed"] for found in values(tmp_path, f"<Deterministic>{one}</Deterministic>")] == [5.0]
+    (playable,) = cases_of([str(tmp_path / "many.xosc")])
+    assert "2 of 3 runs are left out" in (playable.scenario.__doc__ or "")
+
+
+@pytest.mark.usefixtures("plugin")
+def test_a_distribution_without_a_run_inside_the_constraints_is_refused(tmp_path: Path) -> None:
+    one = single("speed", '<DistributionSet><Element value="-5"/></DistributionSet>')
+    with pytest.raises(ScenarioError, match=r"many\.xosc: the constraints of .* allow none of the 1 runs"):
+        values(tmp_path, f"<Deterministic>{one}</Deterministic>")
+
+
+@pytest.mark.usefixtures("plugin")
+def test_a_distribution_of_itself_is_refused(tmp_path: Path) -> None:
+    one = single("speed", '<DistributionSet><Element value="5"/></DistributionSet>')
+    with pytest.raises(ScenarioError, match=r"many\.xosc:1: .* no storyboard"):
+        values(tmp_path, f"<Deterministic>{one}</Deterministic>", file="many.xosc")

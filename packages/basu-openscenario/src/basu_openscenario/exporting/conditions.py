@@ -196,9 +196,10 @@ def _speed(rule: object) -> Callable[[triggers.Faster | triggers.Slower, Rehears
     return tests
 
 
-def _stands(node: triggers.StandsStill, _: RehearsedCase) -> Tests:
-    """Return the test for an entity that stands."""
-    return ((ExportedTest(node.actor, xosc.StandStillCondition(node.seconds)),),)
+def _stands(node: triggers.StandsStill, case: RehearsedCase) -> Tests:
+    """Return the test for an entity that stands; a player sees a rest begin two steps later than the rehearsal."""
+    seconds = max(node.seconds - 2.0 * case.step_s, 0.0)
+    return ((ExportedTest(node.actor, xosc.StandStillCondition(round(seconds, 3))),),)
 
 
 def _elapsed(node: triggers.Elapsed, _: RehearsedCase) -> Tests:

@@ -110,7 +110,7 @@ def at_rest(trail: NDArray[np.float64]) -> tuple[NDArray[np.float64], list[int]]
     rests = np.concatenate([[False], trail[:, 3] < AT_REST_MPS, [False]])
     changes = np.flatnonzero(rests[1:] != rests[:-1])
     for first, end in zip(changes[::2], changes[1::2], strict=True):
-        trail[first:end, :3] = trail[end - 1, :3]
+        trail[first:end, :3] = trail[first, :3]  # its end would be reached by a jump, faster than the motion before
         marks += [int(first), int(end) - 1]
     return trail, marks
 
@@ -119,7 +119,9 @@ def thinned(points: NDArray[np.float64], rests: Sequence[int] = (), moments: Seq
     """Return the points between which the others are linear in time, as closely as ``CLOSE_M`` and ``CLOSE_RAD`` say.
 
     A motion that stays where it is has no points but its first. See Douglas and Peucker 1973, with time as the axis.
-    Points near a rest are left out, since esmini merges points within 5 cm and would let it begin or end at others.
+    Points near a rest are left out, since esmini merges points within 5 cm and would let it begin or end at others. A
+    moment shortly before a rest is kept. Without it the way into the rest has one speed. A trigger that waits for
+    a low speed then comes late. esmini then lets the rest begin at that moment.
 
     Args:
         points: (N, 4) s, x and y in m, yaw in rad.
@@ -147,10 +149,12 @@ def thinned(points: NDArray[np.float64], rests: Sequence[int] = (), moments: Seq
             middle = first + 1 + worst
             kept.add(middle)
             left += [(first, middle), (middle, last)]
-    places = points[list(rests), 1:3]
-    near = [
-        nth
-        for nth in kept - {0, len(points) - 1, *rests}
-        if len(places) and float(np.hypot(*(places - points[nth, 1:3]).T).min()) < NEAR_REST_M
-    ]
+    near = {nth for nth in kept - {0, len(points) - 1, *rests} if _is_near_rest(points, nth, rests)}
+    near -= {nth for nth in moments if not _is_near_rest(points, nth, [mark for mark in rests if mark < nth])}
     return points[sorted(kept.difference(near))]
+
+
+def _is_near_rest(points: NDArray[np.float64], nth: int, rests: Sequence[int]) -> bool:
+    """Return whether a point is so near to the place of a rest that esmini would merge them."""
+    places = points[list(rests), 1:3]
+    return len(places) > 0 and float(np.hypot(*(places - points[nth, 1:3]).T).min()) < NEAR_REST_M

@@ -35,7 +35,7 @@ class Teleport(AtOnce):
         place = self.world.place_of(self.action.position, self.mover)
         place.route = self.mover.place.route
         place.at_end_of_road = False
-        self.mover.place = place
+        self.mover.place, self.mover.rear_m = place, None
         self.mover.moved_along = self.mover.speed_is_set = self.mover.teleported = True
 
 

@@ -34,6 +34,7 @@ from basu_openscenario.playing.synchronisation import Synchronisation
 from basu_openscenario.playing.triggers import RunningCondition, RunningTrigger
 from basu_openscenario.reading import actions
 from basu_openscenario.reading.conditions import ByElement, ByEntity, BySignal, BySignalController, ByTime, ByVariable
+from basu_openscenario.reading.xml_node import at_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,9 +67,14 @@ MAKERS: dict[type, Callable[..., RunningAction]] = {
 """What does each private action."""
 
 
-def private_action(name: str, world: World, mover: Mover, action: actions.PrivateAction) -> RunningAction:
-    """Return a private action at work."""
-    return MAKERS[type(action)](name, world, mover, action)
+def private_action(name: str, world: World, mover: Mover, action: actions.PrivateAction, line: str) -> RunningAction:
+    """Return a private action at work; its errors begin with its file and line."""
+    try:
+        made = MAKERS[type(action)](name, world, mover, action)
+    except ScenarioError as error:
+        raise at_line(line, error) from error
+    made.line = line
+    return made
 
 
 def build(scenario: ScenarioFile, world: World) -> tuple[Element, list[RunningAction]]:
@@ -110,9 +116,9 @@ def build(scenario: ScenarioFile, world: World) -> tuple[Element, list[RunningAc
         element.start_trigger = make(start)
         element.stop_trigger = make(stop)
     init: list[RunningAction] = [WorldChange("init", world, action) for action in board.global_actions]
-    for entity, action, _ in board.private_actions:
+    for entity, action, line in board.private_actions:
         meant = scenario.selections.get(entity, (entity,))
-        init += [private_action("init", world, world.mover(name), action) for name in meant]
+        init += [private_action("init", world, world.mover(name), action, line) for name in meant]
     return root, init
 
 
@@ -124,12 +130,13 @@ def _event(event: Event, movers: list[Mover], world: World) -> EventElement:
             made += [_private(one, world, mover) for mover in movers]
         else:
             made.append(WorldChange(one.name, world, one.action))  # type: ignore[arg-type]
+            made[-1].line = one.line  # type: ignore[attr-defined]
     return EventElement(event.name, made, event.most, event.priority)
 
 
 def _private(one: NamedAction, world: World, mover: Mover) -> RunningAction:
     """Return the private action of an event for one actor."""
-    return private_action(one.name, world, mover, one.action)  # type: ignore[arg-type]
+    return private_action(one.name, world, mover, one.action, one.line)  # type: ignore[arg-type]
 
 
 def _trigger(

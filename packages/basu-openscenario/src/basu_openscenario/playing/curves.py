@@ -18,16 +18,21 @@ from basu_openscenario.roads.place import Place, wrapped
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu_openscenario.reading.positions import Position, TrajectorySpec
+    from basu_openscenario.reading.positions import Orientation, Position, TrajectorySpec
 
 STEP_M = 1.0
 """Length of the pieces into which curves are cut, as esmini cuts them."""
+FINE_STEP_M = 0.25
+"""The same for a single clothoid, which esmini evaluates exactly: within a millimetre at a radius of 10 m."""
 CORNER_M = 2.0
 """Length before and behind a corner over which the heading turns."""
 
 
 class Vertex(NamedTuple):
-    """A point of a trajectory: m, rad, s and m/s; ``h_rad`` is the body's heading, ``true_rad`` the path's."""
+    """A point of a trajectory: m, rad, s and m/s; ``h_rad`` is the body's heading, ``true_rad`` the path's.
+
+    Without a height of its own the body stands on the road, without a pitch and a roll it has those of the road.
+    """
 
     s_m: float
     x_m: float
@@ -39,6 +44,8 @@ class Vertex(NamedTuple):
     has_heading: bool
     speed_mps: float = 0.0
     acceleration_mps2: float = 0.0
+    p_rad: float | None = None
+    r_rad: float | None = None
 
 
 @dataclass(slots=True)
@@ -87,22 +94,34 @@ class Curve:
         def mix(one: float, other: float) -> float:
             return (1.0 - share) * one + share * other
 
+        def turned(name: str) -> float | None:
+            angles = [getattr(self.vertices[n], name) for n in (max(index - 1, 0), index, index + 1)]
+            if angles[1] is None:
+                return None
+            before, here, following = (angles[1] if angle is None else angle for angle in angles)
+            return self._angle(index, local_m, length_m, before, here, following)
+
         z_m = None if a.z_m is None or b.z_m is None else mix(a.z_m, b.z_m)
+        h_rad = turned("h_rad")
+        assert h_rad is not None, "each vertex has a heading"
         return Vertex(
             mix(a.s_m, b.s_m),
             mix(a.x_m, b.x_m),
             mix(a.y_m, b.y_m),
             z_m,
-            self._heading(index, local_m, length_m),
+            h_rad,
             a.true_rad,
             mix(a.time_s, b.time_s),
             a.has_heading,
             mix(a.speed_mps, b.speed_mps),
+            p_rad=turned("p_rad"),
+            r_rad=turned("r_rad"),
         )
 
-    def _heading(self, index: int, local_m: float, length_m: float) -> float:
-        """Return the body's heading between two vertices."""
-        here, following = self.vertices[index].h_rad, self.vertices[index + 1].h_rad
+    def _angle(
+        self, index: int, local_m: float, length_m: float, before: float, here: float, following: float
+    ) -> float:
+        """Return an angle of the body ``local_m`` behind a vertex, from those of three vertices one after the other."""
         ahead = wrapped(following - here)
         if self.turns == "segment":
             return here + local_m / length_m * ahead
@@ -112,7 +131,6 @@ class Curve:
         if local_m < radius_m:
             if index == 0:
                 return here
-            before = self.vertices[index - 1].h_rad
             return before + (radius_m + local_m) / (2.0 * radius_m) * wrapped(here - before)
         if local_m > length_m - radius_m:
             left_m = length_m - local_m
@@ -127,14 +145,13 @@ class Curve:
             return self.length_m
         if time_s <= self.vertices[0].time_s:
             return 0.0
-        for a, b in pairwise(self.vertices):
-            if a.time_s <= time_s < b.time_s:
-                since_s = time_s - a.time_s
-                if self.follows:
-                    s_m = a.s_m + a.speed_mps * since_s + 0.5 * a.acceleration_mps2 * since_s * since_s
-                    return min(max(s_m, a.s_m), b.s_m)
-                return a.s_m + (b.s_m - a.s_m) * since_s / max(b.time_s - a.time_s, SMALL)
-        return self.length_m
+        index = bisect.bisect_right(self.vertices, time_s, key=lambda vertex: vertex.time_s) - 1
+        a, b = self.vertices[index], self.vertices[index + 1]
+        since_s = time_s - a.time_s
+        if self.follows:
+            s_m = a.s_m + a.speed_mps * since_s + 0.5 * a.acceleration_mps2 * since_s * since_s
+            return min(max(s_m, a.s_m), b.s_m)
+        return a.s_m + (b.s_m - a.s_m) * since_s / max(b.time_s - a.time_s, SMALL)
 
     def nearest(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Return where along the trajectory its point nearest to a point of the world is, and how far that is; m."""
@@ -184,6 +201,7 @@ def lay(
         vertices, timed = _nurbs(shape, place_of)
     if timed and any(b.time_s < a.time_s for a, b in pairwise(vertices)):
         raise ScenarioError(f"the times of the trajectory '{spec.name}' do not go up; sort its vertices")
+    follows = follows and isinstance(shape, PolylineSpec)  # along a curve the times are those of its length
     vertices = _with_speeds(vertices, speed_mps, follows=follows) if timed else vertices
     return Curve(spec.name, spec.closed, vertices, turns, follows, timed)
 
@@ -215,7 +233,23 @@ def _polyline(shape: PolylineSpec, place_of: Callable[[Position], Place]) -> tup
         z_m = place.z_m if place.z_rel_m is None else None
         h_rad = place.h_rad if given[nth] else headings[nth]
         found.append(Vertex(s_m, place.x_m, place.y_m, z_m, h_rad, headings[nth], times[nth] or 0.0, given[nth]))
+    found = _pitched(found, [position.orientation for position, _ in shape.vertices])
     return found, all(time_s is not None for time_s in times) and (times[-1] or 0.0) - (times[0] or 0.0) > SMALL
+
+
+def _pitched(vertices: list[Vertex], given: list[Orientation]) -> list[Vertex]:
+    """Return vertices that have heights with the pitch that the file gives, or that of the next piece."""
+    found, pitch = [], 0.0
+    for nth, (vertex, orientation) in enumerate(zip(vertices, given, strict=True)):
+        following = vertices[min(nth + 1, len(vertices) - 1)]
+        if vertex.z_m is None:
+            found.append(vertex)
+            continue
+        if following.z_m is not None and following.s_m - vertex.s_m > SMALL:
+            pitch = -math.atan2(following.z_m - vertex.z_m, following.s_m - vertex.s_m)
+        own = orientation.p_rad
+        found.append(vertex._replace(p_rad=pitch if own is None else own, r_rad=orientation.r_rad or 0.0))
+    return found
 
 
 def _with_speeds(vertices: list[Vertex], speed_mps: float, *, follows: bool) -> list[Vertex]:
@@ -240,24 +274,24 @@ def _with_speeds(vertices: list[Vertex], speed_mps: float, *, follows: bool) -> 
 
 
 def _clothoid(shape: ClothoidSpec, start: Place) -> tuple[list[Vertex], bool]:
-    """Return the vertices of a clothoid, a metre apart."""
+    """Return the vertices of a clothoid, `FINE_STEP_M` apart."""
     curve = Clothoid(
         0.0, start.x_m, start.y_m, start.h_rad, shape.length_m, shape.curvature_per_m, shape.curvature_prime_per_m2
     )
     timed = shape.start_s is not None and shape.stop_s is not None
     first, last = (shape.start_s or 0.0), (shape.stop_s or 0.0)
     found = []
-    for s_m in _marks(shape.length_m):
+    for s_m in _marks(shape.length_m, FINE_STEP_M):
         point = curve.at(s_m)
         time_s = first + s_m / shape.length_m * (last - first)
         found.append(Vertex(s_m, point.x_m, point.y_m, None, point.h_rad, point.h_rad, time_s, has_heading=False))
     return found, timed
 
 
-def _marks(length_m: float) -> list[float]:
-    """Return distances from 0 to the length, `STEP_M` apart; the last piece may be longer."""
-    steps = int(length_m / STEP_M)
-    return [*(nth * STEP_M for nth in range(steps)), length_m] if steps else [0.0, length_m]
+def _marks(length_m: float, step_m: float) -> list[float]:
+    """Return distances from 0 to the length, a step apart; the last piece may be longer."""
+    steps = int(length_m / step_m)
+    return [*(nth * step_m for nth in range(steps)), length_m] if steps else [0.0, length_m]
 
 
 def _spline(shape: ClothoidSplineSpec, place_of: Callable[[Position], Place], here: Place) -> tuple[list[Vertex], bool]:
@@ -290,44 +324,67 @@ def _spline(shape: ClothoidSplineSpec, place_of: Callable[[Position], Place], he
     return found, timed
 
 
+class NurbsPoint(NamedTuple):
+    """A point of a NURBS curve: m and rad.
+
+    The height is mixed from those of the control points. The standard has no rule for angles; they are mixed as esmini
+    mixes them, each control point turning what the ones before it gave by its share.
+    """
+
+    x_m: float
+    y_m: float
+    z_m: float
+    h_rad: float
+    p_rad: float
+    basis: list[float]
+
+
 def _nurbs(shape: NurbsSpec, place_of: Callable[[Position], Place]) -> tuple[list[Vertex], bool]:
-    """Return points of a NURBS curve about a metre apart, with times between those of the control points."""
+    """Return points of a NURBS curve about a metre apart, with times between those of the control points.
+
+    The first control point says whether the points have heights and headings of their own, as in esmini.
+    """
     places = [place_of(point.position) for point in shape.points]
     length_m = sum(math.hypot(b.x_m - a.x_m, b.y_m - a.y_m) for a, b in pairwise(places))
     if length_m > LONGEST_TRAJECTORY_M:
         raise ScenarioError(f"a NURBS of {length_m:g} m is not supported; at most {LONGEST_TRAJECTORY_M:g} m are")
     steps = 1 + int(length_m / STEP_M)
     last = shape.knots[-1]
-    timed = all(point.time_s is not None for point in shape.points)
+    own = shape.points[0].position.orientation
+    has_height, has_heading = places[0].z_rel_m is None, own.h_rad is not None
     peaks = [(0.0, 0.0)] * len(places)
-    raw: list[tuple[float, float, float, float, float]] = []
+    raw: list[tuple[float, Vertex]] = []
     s_m = 0.0
     for nth in range(steps + 1):
         t = nth * last / steps
-        x_m, y_m, shares = _on_nurbs(shape, places, t)
-        peaks = [(share, t) if share > peak[0] else peak for share, peak in zip(shares, peaks, strict=True)]
-        nearby = t + 0.001 if nth < steps else t - 0.001
-        nx_m, ny_m, _ = _on_nurbs(shape, places, min(max(nearby, 0.0), last))
+        here = _on_nurbs(shape, places, t)
         turn = 1.0 if nth < steps else -1.0
-        heading = math.atan2(turn * (ny_m - y_m), turn * (nx_m - x_m))
-        s_m += math.hypot(x_m - raw[-1][1], y_m - raw[-1][2]) if raw else 0.0
-        raw.append((s_m, x_m, y_m, heading, t))
-    raw[0] = (*raw[0][:3], raw[1][3], raw[0][4])  # esmini gives the first point the heading of the second
+        nearby = _on_nurbs(shape, places, min(max(t + turn * 0.001, 0.0), last))
+        peaks = [(share, t) if share > peak[0] else peak for share, peak in zip(nearby.basis, peaks, strict=True)]
+        dx, dy, dz = (turn * (b - a) for a, b in zip(here[:3], nearby[:3], strict=True))
+        heading = here.h_rad if has_heading else math.atan2(dy, dx)
+        pitch = here.p_rad if own.p_rad is not None else -math.atan2(dz, math.hypot(dx, dy))
+        s_m += math.hypot(here.x_m - raw[-1][1].x_m, here.y_m - raw[-1][1].y_m) if raw else 0.0
+        vertex = Vertex(s_m, here.x_m, here.y_m, here.z_m if has_height else None, heading, heading, 0.0, has_heading)
+        if has_height:
+            vertex = vertex._replace(p_rad=pitch, r_rad=own.r_rad or 0.0)
+        raw.append((t, vertex))
+    if not has_heading:  # esmini gives the first point the heading of the second
+        raw[0] = raw[0][0], raw[0][1]._replace(h_rad=raw[1][1].h_rad, true_rad=raw[1][1].h_rad)
     found = []
     current = 0
-    for s_m, x_m, y_m, heading, t in raw:
+    for t, vertex in raw:
         while current < len(places) - 2 and t >= peaks[current + 1][1]:
             current += 1
         a, b = peaks[current][1], peaks[current + 1][1]
         share = (t - a) / max(b - a, SMALL)
         first, second = (shape.points[current].time_s or 0.0), (shape.points[current + 1].time_s or 0.0)
-        time_s = first + share * (second - first)
-        found.append(Vertex(s_m, x_m, y_m, None, heading, heading, time_s, has_heading=False))
-    return found, timed
+        found.append(vertex._replace(time_s=first + share * (second - first)))
+    return found, all(point.time_s is not None for point in shape.points)
 
 
-def _on_nurbs(shape: NurbsSpec, places: list[Place], t: float) -> tuple[float, float, list[float]]:
-    """Return a point of the curve and the share of each control point (Cox and de Boor)."""
+def _on_nurbs(shape: NurbsSpec, places: list[Place], t: float) -> NurbsPoint:
+    """Return a point of the curve (Cox and de Boor)."""
     t = min(max(t, shape.knots[0]), shape.knots[-1] - SMALL)
     knots = shape.knots
     basis = [1.0 if knots[i] <= t < knots[i + 1] else 0.0 for i in range(len(knots) - 1)]
@@ -338,8 +395,15 @@ def _on_nurbs(shape: NurbsSpec, places: list[Place], t: float) -> tuple[float, f
             value = 0.0 if left == 0.0 else (t - knots[i]) / left * basis[i]
             value += 0.0 if right == 0.0 else (knots[i + degree + 1] - t) / right * basis[i + 1]
             basis[i] = value
-    shares = [basis[i] * shape.points[i].weight for i in range(len(places))]
-    total = sum(shares) or 1.0
-    x_m = sum(share * place.x_m for share, place in zip(shares, places, strict=True)) / total
-    y_m = sum(share * place.y_m for share, place in zip(shares, places, strict=True)) / total
-    return x_m, y_m, basis[: len(places)]
+    weights = [basis[i] * shape.points[i].weight for i in range(len(places))]
+    total = sum(weights) or 1.0
+    shares = [weight / total for weight in weights]
+    x_m, y_m, z_m = (
+        sum(share * getattr(place, name) for share, place in zip(shares, places, strict=True))
+        for name in ("x_m", "y_m", "z_m")
+    )
+    h_rad = p_rad = 0.0
+    for share, place in zip(shares, places, strict=True):
+        h_rad += share * wrapped(place.h_rad - h_rad)
+        p_rad += share * wrapped(place.p_rad - p_rad)
+    return NurbsPoint(x_m, y_m, z_m, h_rad, p_rad, basis[: len(places)])

@@ -65,8 +65,10 @@ class TrajectoryFollowing(RunningAction):
     def _stand(self, vertex: Vertex, h_rad: float) -> None:
         """Put the entity on a point of the trajectory."""
         place = self.mover.place
-        place.on_surface = True
+        place.on_surface = vertex.p_rad is None
         place.set_world(vertex.x_m, vertex.y_m, h_rad, vertex.z_m)
+        if vertex.p_rad is not None:
+            place.p_rad, place.r_rad = vertex.p_rad, vertex.r_rad or 0.0
 
     def work(self, step_s: float) -> bool:
         """Move a step along the trajectory, and straight on beyond its end."""

@@ -49,5 +49,5 @@ class WorldChange(AtOnce):
             assert isinstance(action, AddEntityAction), "there are no other global actions"
             mover = world.mover(action.entity)
             mover.is_there = True
-            mover.place = world.place_of(action.position, mover)
+            mover.place, mover.rear_m = world.place_of(action.position, mover), None
             mover.teleported = True

@@ -62,6 +62,26 @@ class Mover:
     """The motion by an agent; None where the scenario moves the entity."""
     before: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """x, y, z and heading at the end of the step before."""
+    rear_m: tuple[float, float] | None = None
+    """The rear axle of a vehicle with its reference point elsewhere; None: as its pose has it."""
+
+    def __post_init__(self) -> None:
+        """Put the rear axle where the entity begins."""
+        self.rear_m = self._rear_axle()
+
+    def _rear_axle(self) -> tuple[float, float]:
+        """Return where the rear axle is by the pose; m."""
+        place, ahead_m = self.place, self.entity.ahead_m
+        return place.x_m - ahead_m * math.cos(place.h_rad), place.y_m - ahead_m * math.sin(place.h_rad)
+
+    def pull(self) -> None:
+        """Let the rear axle follow a reference point that is not on it, so that the body turns as if it were towed."""
+        if self.entity.ahead_m == 0.0 or self.given is not None:
+            return
+        place = self.place
+        x_m, y_m = self.rear_m or self._rear_axle()
+        self.turn_to(math.atan2(place.y_m - y_m, place.x_m - x_m))
+        self.rear_m = self._rear_axle()
 
     @property
     def name(self) -> str:

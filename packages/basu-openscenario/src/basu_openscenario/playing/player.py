@@ -99,6 +99,7 @@ class Player:
         for mover in world.movers.values():
             self._drive(mover, step_s)
         for mover in world.movers.values():
+            mover.pull()
             mover.watch(world.time_s)
         for mover in world.movers.values():
             mover.settle(step_s)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
+from basu.errors import ScenarioError
 from basu_openscenario.playing.elements import Element, State
+from basu_openscenario.reading.xml_node import at_line
 
 if TYPE_CHECKING:
     from basu_openscenario.playing.mover import Mover
@@ -25,6 +27,8 @@ class RunningAction(Element, ABC):
         """Take the world and the entity; None: an action on the world."""
         super().__init__(name)
         self.world, self._mover = world, mover
+        self.line = str(world.network.path)
+        """The file and the line of the action, for sentences."""
 
     @property
     def mover(self) -> Mover:
@@ -44,7 +48,10 @@ class RunningAction(Element, ABC):
                 if other is not self and other.domains & self.domains:
                     other.end()
             self.world.acting.setdefault(self._mover.name, []).append(self)
-        self.prepare()
+        try:
+            self.prepare()
+        except ScenarioError as error:
+            raise at_line(self.line, error) from error
 
     def step(self) -> None:
         """Work for a step, and end where that was the last."""

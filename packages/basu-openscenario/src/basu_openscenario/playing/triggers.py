@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+from basu.errors import ScenarioError
 from basu_openscenario.playing.transition import SMALL
+from basu_openscenario.reading.xml_node import at_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,7 +90,10 @@ class RunningTrigger:
             good = bool(group)
             for one in group:
                 if good or one.condition.delay_s > 0.0:  # others need not be looked at once the group is false
-                    good = one.check(time_s) and good
+                    try:
+                        good = one.check(time_s) and good
+                    except ScenarioError as error:
+                        raise at_line(one.condition.line, error) from error
             found = found or good
         if found:
             for one in (one for group in self.groups for one in group):

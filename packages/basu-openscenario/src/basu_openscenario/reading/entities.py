@@ -59,6 +59,8 @@ class Entity:
     line: str = ""
     model: str = ""
     """The name that the file gives the body, such as a blueprint of CARLA."""
+    ahead_m: float = 0.0
+    """How far the reference point is ahead of the rear axle, by esmini's property `refpoint_x_offset`."""
 
 
 def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], dict[str, tuple[str, ...]]]:
@@ -100,25 +102,35 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
     category = described.text(f"{'miscObject' if kind == 'miscellaneous' else kind}Category", "")
     holders = [one for one in node.children("ObjectController") if any(True for _ in one.children())]
     controllers = [read_controller(one, catalogs) for one in holders]
+    ahead_m = _ahead_m(described) if kind == "vehicle" else 0.0
     return Entity(
         node.text("name"),
         kind,
         category,
-        _box(described),
+        _box(described, ahead_m),
         _performance(described),
         _properties(described),
         tuple(controllers),
         f"{node.path}:{node.element.sourceline}",
         described.text("name", ""),
+        ahead_m,
     )
 
 
-def _box(node: Node) -> BoundingBox:
-    """Return the bounding box of a body."""
+def _ahead_m(node: Node) -> float:
+    """Return how far the reference point of a vehicle is ahead of its rear axle; the standard has it there."""
+    for one in () if node.find("Properties") is None else node.child("Properties").children("Property"):
+        if one.text("name") == "refpoint_x_offset":
+            return one.number("value")
+    return 0.0
+
+
+def _box(node: Node, ahead_m: float) -> BoundingBox:
+    """Return the bounding box of a body about a reference point that lies ``ahead_m`` before the standard's."""
     box = node.child("BoundingBox")
     centre, size = box.child("Center"), box.child("Dimensions")
     return BoundingBox(
-        (centre.number("x"), centre.number("y"), centre.number("z")),
+        (centre.number("x") - ahead_m, centre.number("y"), centre.number("z")),
         size.number("length"),
         size.number("width"),
         size.number("height"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from basu.errors import ScenarioError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from basu_openscenario.reading.expressions import Scope
     from basu_openscenario.reading.xml_node import Node
@@ -100,11 +100,43 @@ def check_type(node: Node, name: str, value: str, kind: str) -> None:
         raise node.fault(f"'{value}' of '{name}' is no {kind}; give one")
 
 
+def within_constraints(root: Node, runs: Sequence[Mapping[str, str]]) -> list[Mapping[str, str]]:
+    """Return the runs with values that fulfil the constraints of the parameters that a scenario declares.
+
+    Args:
+        root: of the scenario.
+        runs: values by name.
+    """
+    block = root.find("ParameterDeclarations")
+    nodes = [] if block is None else list(block.children("ParameterDeclaration"))
+    if not any(True for node in nodes for _ in node.children("ConstraintGroup")):
+        return list(runs)
+    return [run for run in runs if _allows(nodes, run)]
+
+
+def _allows(nodes: Sequence[Node], run: Mapping[str, str]) -> bool:
+    """Return whether declarations, which may name those before them, allow a run."""
+    scope = nodes[0].scope
+    for node in nodes:
+        entry = node.within(scope)
+        name = entry.text("name")
+        value = run[name] if name in run else entry.text("value", "")
+        if not _fulfils(entry, value):
+            return False
+        scope = scope.with_values({name: value})
+    return True
+
+
 def _check_constraints(node: Node, name: str, value: str) -> None:
     """Check that a value fulfils one of the groups of constraints, where there are any."""
-    groups = list(node.children("ConstraintGroup"))
-    if groups and not any(all(_holds(one, value) for one in group.children("ValueConstraint")) for group in groups):
+    if not _fulfils(node, value):
         raise node.fault(f"'{value}' of '{name}' is outside its constraints; give a value inside")
+
+
+def _fulfils(node: Node, value: str) -> bool:
+    """Return whether a value fulfils one of the groups of constraints of a declaration, where there are any."""
+    groups = list(node.children("ConstraintGroup"))
+    return not groups or any(all(_holds(one, value) for one in group.children("ValueConstraint")) for group in groups)
 
 
 def _holds(constraint: Node, value: str) -> bool:

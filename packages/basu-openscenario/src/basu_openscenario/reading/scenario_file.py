@@ -133,10 +133,17 @@ def _road_file(network: Node) -> Path | None:
 
 
 def _signal_controllers(network: Node) -> tuple[SignalController, ...]:
-    """Return the controllers of signals."""
+    """Return the controllers of signals.
+
+    Raises:
+        ScenarioError: one has no phase with a duration, or refers to none or in a circle.
+    """
     found = []
     block = network.find("TrafficSignals")
-    for node in () if block is None else block.children("TrafficSignalController"):
+    nodes = [] if block is None else list(block.children("TrafficSignalController"))
+    references = {one.text("name"): one.text("reference", "") for one in nodes}
+    for node in nodes:
+        _check_reference(node, references)
         phases = tuple(
             SignalPhase(
                 one.text("name"),
@@ -150,3 +157,15 @@ def _signal_controllers(network: Node) -> tuple[SignalController, ...]:
         reference = node.text("reference") if node.has("reference") else None
         found.append(SignalController(node.text("name"), phases, node.number("delay", 0.0), reference))
     return tuple(found)
+
+
+def _check_reference(node: Node, references: dict[str, str]) -> None:
+    """Refuse a controller of signals if its references lead to none, or in a circle."""
+    name = node.text("name")
+    seen = [name]
+    while reference := references[seen[-1]]:
+        if reference not in references:
+            raise node.fault(f"the controller '{name}' refers to '{reference}', which does not exist; correct the name")
+        if reference in seen:
+            raise node.fault(f"the references of the controller '{name}' go in a circle; remove one of them")
+        seen.append(reference)

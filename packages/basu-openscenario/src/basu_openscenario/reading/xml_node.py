@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 LARGEST_FILE_BYTES = 32 * 1024 * 1024
 """A file above this is refused: the largest public scenario has 2 MB, the largest road network of a town 20 MB."""
+PLACED = re.compile(r"[^\n]*?:\d+: ")
+"""The begin of a sentence with file and line."""
 DEEPEST = 64
 """Levels of elements: OpenSCENARIO's schema nests fewer than 30."""
 
@@ -149,6 +152,11 @@ class Node:
         if text not in options:
             raise self.fault(f'{name}="{text}" of <{self.tag}> is not supported; write one of {", ".join(options)}')
         return text
+
+
+def at_line(line: str, error: ScenarioError) -> ScenarioError:
+    """Return an error with the file and the line of an element, unless it names a place itself."""
+    return error if PLACED.match(str(error)) else ScenarioError(f"{line}: {error}")
 
 
 def read_xml(path: Path, root: str, scope: Scope | None = None) -> Node:

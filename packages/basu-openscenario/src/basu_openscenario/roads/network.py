@@ -230,8 +230,10 @@ class Network:
             line = road.line(s_m)
             dx, dy = x_m - line.x_m, y_m - line.y_m
             along = dx * math.cos(line.h_rad) + dy * math.sin(line.h_rad)
-            t_m = -dx * math.sin(line.h_rad) + dy * math.cos(line.h_rad)
-            stretch = max(1.0 - line.curvature_per_m * t_m, 0.2)
+            plan_m = -dx * math.sin(line.h_rad) + dy * math.cos(line.h_rad)
+            t_m, shift_m = road.from_plan(s_m, plan_m)
+            along -= shift_m
+            stretch = max(1.0 - line.curvature_per_m * plan_m, 0.2)
             wanted = s_m + along / stretch
             held = min(max(wanted, 0.0), road.length_m)
             over_m = abs(wanted - held)

@@ -133,7 +133,7 @@ class Place:
         if self.z_rel_m is not None:
             self.z_m = point.z_m + self.z_rel_m
         self.h_rad = point.h_rad + self._drift() + self.h_rel_rad
-        self._tilt(point.h_rad, point.p_rad, point.r_rad)
+        self._tilt(point)
 
     def _pose_from_world(self) -> None:
         """Lay a point of the world on the surface below it."""
@@ -142,7 +142,7 @@ class Place:
         point = self._point()
         if self.z_rel_m is not None:
             self.z_m = point.z_m + self.z_rel_m
-        self._tilt(point.h_rad, point.p_rad, point.r_rad)
+        self._tilt(point)
 
     def _point(self) -> RoadPoint:
         """Return the point of the surface here; kerbs lift some lanes above the road."""
@@ -150,20 +150,25 @@ class Place:
         above_m = self.road.section(self.s_m).height_m(self.lane, self.s_m, self.offset_m)
         return self.road.point(self.s_m, self.t_m, above_m)
 
-    def _tilt(self, h_rad: float, p_rad: float, r_rad: float) -> None:
+    def _tilt(self, point: RoadPoint) -> None:
         """Turn pitch and roll of the road into those of the body with its own heading."""
         if not self.on_surface:
             return
-        if abs(p_rad) < SMALL and abs(r_rad) < SMALL:
+        h_rad, p_rad, r_rad = point.h_rad, point.p_rad, point.r_rad
+        if max(abs(p_rad), abs(r_rad), abs(point.twist_rad)) < SMALL:
             self.p_rad, self.r_rad = 0.0, 0.0
             return
-        turn = self.h_rad - h_rad
+        turn, own_p = self.h_rad - h_rad, math.cos(self.h_rel_rad) * point.twist_rad
         cos_p, sin_p, cos_r, sin_r = math.cos(p_rad), math.sin(p_rad), math.cos(r_rad), math.sin(r_rad)
-        cos, sin = math.cos(turn), math.sin(turn)
-        # columns of Ry(p) Rx(r) Rz(turn): forward and up of the body, in the axes of the road's plan
-        forward = (cos_p * cos + sin_p * sin_r * sin, cos_r * sin, -sin_p * cos + cos_p * sin_r * sin)
-        left_z = sin_p * sin + cos_p * sin_r * cos
-        up_z = cos_p * cos_r
+        cos, sin, cos_own, sin_own = math.cos(turn), math.sin(turn), math.cos(own_p), math.sin(own_p)
+
+        def turned(x: float, y: float, z: float) -> tuple[float, float, float]:
+            """Return a vector of the banked surface in the axes of the road's plan: Ry(p) Rx(r)."""
+            y, z = cos_r * y - sin_r * z, sin_r * y + cos_r * z
+            return cos_p * x + sin_p * z, y, cos_p * z - sin_p * x
+
+        forward = turned(cos * cos_own, sin * cos_own, -sin_own)
+        left_z, up_z = turned(-sin, cos, 0.0)[2], turned(cos * sin_own, sin * sin_own, cos_own)[2]
         self.p_rad = -math.asin(max(-1.0, min(1.0, forward[2])))
         self.r_rad = math.atan2(left_z, up_z)
         self.h_rad = h_rad + math.atan2(forward[1], forward[0])

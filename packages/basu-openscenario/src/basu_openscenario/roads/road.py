@@ -10,6 +10,8 @@ from typing import NamedTuple
 from basu_openscenario.roads.geometry import Cubic, Curve, LinePoint, cubic, slope
 
 MARGIN_M = 1e-6
+STEEPEST = 0.05
+"""The least cosine of a superelevation by which a place of the plan is laid on the banked surface."""
 
 
 class Piece(NamedTuple):
@@ -138,6 +140,8 @@ class RoadPoint(NamedTuple):
     h_rad: float
     p_rad: float
     r_rad: float
+    twist_rad: float
+    """The pitch that a change of the superelevation gives beside the reference line, in the banked surface."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +198,21 @@ class Road:
             line.h_rad,
             p,
             r,
+            -math.atan(self.superelevation.slope(s_m) * t_m),
         )
+
+    def from_plan(self, s_m: float, plan_m: float) -> tuple[float, float]:
+        """Return t on the banked surface, and how far its point lies ahead of ``s_m`` in the plan; m.
+
+        Args:
+            s_m: along the road.
+            plan_m: to the left of the reference line in the plan.
+        """
+        r = self.superelevation.value(s_m)
+        if r == 0.0:
+            return plan_m, 0.0
+        t_m = plan_m / max(math.cos(r), STEEPEST)
+        return t_m, -math.sin(math.atan(self.elevation.slope(s_m))) * math.sin(r) * t_m
 
     def lane_at(self, s_m: float, t_m: float, kinds: frozenset[str] | None = None) -> tuple[int, float]:
         """Return the lane at a place and the offset from its middle in m; the nearest one beside the lanes.

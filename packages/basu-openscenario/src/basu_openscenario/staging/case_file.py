@@ -12,7 +12,9 @@ from basu.scenarios.parameters import Choice
 from basu.scenarios.stage import Pose
 from basu.scenarios.xml_elements import Case, GivenActor
 from basu_openscenario.reading.distributions import read_distribution
+from basu_openscenario.reading.parameters import within_constraints
 from basu_openscenario.reading.scenario_file import read_scenario
+from basu_openscenario.reading.xml_node import read_xml
 from basu_openscenario.staging.open_scenario import OpenScenario, ego_of, parameters_of
 from basu_openscenario.staging.refusals import check_staged
 
@@ -34,15 +36,16 @@ def read_case_file(path: Path) -> CaseFile:
     path = path.resolve()
     distribution = read_distribution(path)
     file = path if distribution is None else distribution.scenario
-    runs = ({},) if distribution is None else distribution.runs
+    runs: Sequence[Assignment] = ({},) if distribution is None else distribution.runs
     scenario = read_scenario(file)
     _check_runs(runs, scenario, path)
+    runs, left_out = _allowed(runs, file, path)
     check_staged(scenario)
     assert scenario.road_file is not None, "a file without a road network was refused"
     words = re.findall(r"[A-Za-z0-9]+", path.stem)
     name = "".join(word[:1].upper() + word[1:] for word in words) + "Xosc"
     members = {
-        "__doc__": scenario.description or f"The OpenSCENARIO file {path.name}.",
+        "__doc__": (scenario.description or f"The OpenSCENARIO file {path.name}.") + left_out,
         "file": file,
         "defaults": {one: declared.value for one, declared in scenario.declarations.items()},
         "parameters": (*parameters_of(scenario, ego_of(scenario)), *_words(runs, scenario)),
@@ -75,6 +78,20 @@ def _check_runs(runs: Sequence[Assignment], scenario: ScenarioFile, path: Path) 
         if name not in scenario.declarations:
             there = ", ".join(scenario.declarations) or "none"
             raise ScenarioError(f"{path}: {scenario.path} declares no parameter '{name}'; it declares {there}")
+
+
+def _allowed(runs: Sequence[Assignment], file: Path, path: Path) -> tuple[Sequence[Assignment], str]:
+    """Return the runs that the constraints of the scenario allow, and a sentence about the others.
+
+    Raises:
+        ScenarioError: they allow none.
+    """
+    allowed = within_constraints(read_xml(file, "OpenSCENARIO"), runs)
+    if not allowed:
+        raise ScenarioError(f"{path}: the constraints of {file} allow none of the {len(runs)} runs; correct the values")
+    count = len(runs) - len(allowed)
+    left_out = f" {count} of {len(runs)} runs are left out: their values are outside the constraints of the scenario."
+    return [dict(run) for run in allowed], left_out if count else ""
 
 
 def _words(runs: Sequence[Assignment], scenario: ScenarioFile) -> list[Parameter]:
