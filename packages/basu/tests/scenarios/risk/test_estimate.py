@@ -8,7 +8,7 @@ import pytest
 
 from basu.errors import ScenarioError
 from basu.records.partners import Partner
-from basu.scenarios.nhtsa import BURDENS, PER_1E9_MILES, PRINTED_PER_1E9_MILES, Group
+from basu.scenarios.nhtsa import PRINTED_SUMS, TABLE_1_1, Group
 from basu.scenarios.risk.estimate import KINDS, PlayedCase, Risk, risk
 from basu.scenarios.risk.exposure import CONFLICTS, REPORTED, Counted, encounters, read_exposure
 from basu.scenarios.risk.injuries import MPH_MPS, middle, severe
@@ -42,20 +42,20 @@ def driven(crashes: Mapping[Group, int], trials: int) -> Risk:
 
 
 def test_the_rates_of_the_groups_add_up_to_the_printed_total() -> None:
-    assert sum(PER_1E9_MILES.values()) == PRINTED_PER_1E9_MILES
+    assert sum(row.per_1e9_miles for row in TABLE_1_1.values()) == PRINTED_SUMS.per_1e9_miles
 
 
 def test_each_rate_is_its_groups_crashes_over_one_number_of_miles() -> None:
     """2.7 * 10^12 miles a year in each row: a slip in a digit would show here."""
-    for group, burden in BURDENS.items():
-        assert burden.crashes / PER_1E9_MILES[group] == pytest.approx(2_706.0, rel=0.03)
+    for row in TABLE_1_1.values():
+        assert row.crashes / row.per_1e9_miles == pytest.approx(2_706.0, rel=0.03)
 
 
 def test_a_driver_with_the_conflicts_of_the_study_has_the_crashes_of_the_table() -> None:
     found = driven(dict.fromkeys(SCENARIO, REPORTED), CONFLICTS)
-    assert found.rates["crashes"].value == pytest.approx(PRINTED_PER_1E9_MILES / 1000.0)
-    assert found.rates["crashes"].low < PRINTED_PER_1E9_MILES / 1000.0 < found.rates["crashes"].high
-    assert sum(group.reported for group in found.groups) == pytest.approx(PRINTED_PER_1E9_MILES / 1000.0)
+    assert found.rates["crashes"].value == pytest.approx(PRINTED_SUMS.per_1e9_miles / 1000.0)
+    assert found.rates["crashes"].low < PRINTED_SUMS.per_1e9_miles / 1000.0 < found.rates["crashes"].high
+    assert sum(group.reported for group in found.groups) == pytest.approx(PRINTED_SUMS.per_1e9_miles / 1000.0)
 
 
 @pytest.mark.parametrize("rates", [(0.02, 0.1), (0.3, 0.6)])

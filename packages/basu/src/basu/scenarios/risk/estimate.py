@@ -28,7 +28,7 @@ import numpy as np
 from basu.intervals import Interval
 from basu.metrics.passengers.balance import FREE_MPS2, SPREAD, share_that_falls
 from basu.records.partners import Partner
-from basu.scenarios.nhtsa import PER_1E9_MILES, Group
+from basu.scenarios.nhtsa import TABLE_1_1, Group
 from basu.scenarios.risk.exposure import REPORTED, Exposure, drawn_encounters, encounters, reported_crashes
 from basu.scenarios.risk.injuries import ON_FOOT, Curves, drawn_curves, middle, severe
 from basu.scenarios.shares import scenario_weights
@@ -97,7 +97,7 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
     counted = counted or {}
     every = list(played)
     known = [case for case in every if case.counted.verdict not in LEFT_OUT]
-    by_group = {group: [case for case in known if case.counted.group is group] for group in PER_1E9_MILES}
+    by_group = {group: [case for case in known if case.counted.group is group] for group in TABLE_1_1}
     measured = {group: cases for group, cases in by_group.items() if cases}
     rng = np.random.default_rng(SEED)
     reported = rng.gamma(REPORTED + 0.5, size=DRAWS)
@@ -123,7 +123,7 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
             GroupRisk(group, encounters(group, counted), reported_crashes(group), len(cases), _ends(cases))
             for group, cases in measured.items()
         ),
-        unmeasured=tuple(group for group in PER_1E9_MILES if group not in measured),
+        unmeasured=tuple(group for group in TABLE_1_1 if group not in measured),
         left_out=len(every) - len(known),
     )
 
