@@ -1,9 +1,11 @@
 """Claims about matrix.html in a real browser: it makes no request, opens cards, filters, fits on phones and paper."""
 
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from basu.output.report.scenarios.matrix_documents import CaseRecord
 from basu.output.report.scenarios.page.matrix_page import Cell, matrix_page
@@ -122,6 +124,7 @@ def test_it_can_be_read_without_its_script(browser: Browser, file: Path) -> None
     page.locator("details.case summary").first.click()
     assert page.locator("svg.case-picture").first.is_visible()
     assert not page.locator(".filters").is_visible()  # nothing that does nothing
+    assert not page.locator(".film-bar").first.is_visible()
     context.close()
 
 
@@ -131,3 +134,46 @@ def test_on_paper_there_are_matrix_and_opened_cases(page: Page) -> None:
     assert page.locator(".matrix").first.is_visible()
     assert page.locator("details.case:visible").count() == 1
     assert not page.locator(".filters").is_visible()
+
+
+def boxes(page: Page, style: str) -> list[dict[str, float]]:
+    return [found for each in page.locator(f"{CARD} .film .{style}").all() if (found := each.bounding_box())]
+
+
+def moved_to(page: Page, seconds: float) -> None:
+    slider = page.locator(f"{CARD} .film-bar input")
+    slider.evaluate("(s, to) => { s.value = to; s.dispatchEvent(new Event('input')); }", seconds)
+
+
+def test_the_slider_of_a_film_moves_the_ego_to_its_place_of_the_record(context: BrowserContext, file: Path) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}{CARD}")
+    assert page.locator(f"{CARD} .moment").is_visible()
+    middles = []
+    for seconds in (6.0, 7.0):
+        moved_to(page, seconds)
+        assert not page.locator(f"{CARD} .moment").is_visible()
+        assert page.locator(f"{CARD} .film-bar output").inner_text().startswith(f"{seconds:.1f} s, ego at ")
+        (box,) = boxes(page, "own")
+        middles.append(box["x"] + box["width"] / 2.0)
+    history = crossing()
+    way_m = np.diff(np.interp([6.0, 7.0], history.frames["t_s"], history.frames["x_m"]))[0]
+    dots = page.locator(f"{CARD} .scale").bounding_box()
+    text = page.locator(f"{CARD} svg.case-picture text", has_text=re.compile(r"^\d+ m$")).first.text_content() or ""
+    assert dots is not None
+    pixels_per_m = dots["width"] / float(text.removesuffix(" m"))
+    assert middles[1] - middles[0] == pytest.approx(way_m * pixels_per_m, rel=0.05)
+
+
+def test_a_film_plays_to_its_end_and_the_still_picture_comes_back(context: BrowserContext, file: Path) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}{CARD}")
+    slider = page.locator(f"{CARD} .film-bar input")
+    end_s = float(slider.get_attribute("max") or "nan")
+    moved_to(page, end_s - 0.3)
+    page.locator(f"{CARD} .play").click()
+    expect(page.locator(f"{CARD} .film-bar output")).to_contain_text(f"{end_s:.1f} s, ego at", timeout=20_000)
+    expect(page.locator(f"{CARD} .play")).to_have_text("Play")
+    page.locator(f"{CARD} .still").click()
+    assert page.locator(f"{CARD} .moment").is_visible()
+    assert page.locator(f"{CARD} .film-bar output").inner_text() == ""
