@@ -3,10 +3,12 @@
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
+from basu.metrics.boxes import own_boxes
+from basu.output.report.scenarios.drawing.canvas import canvas_for, what_matters
+from basu.output.report.scenarios.drawing.encounter import story_of
 from basu.output.report.scenarios.matrix_documents import CaseRecord
 from basu.output.report.scenarios.page.matrix_page import Cell, matrix_page
 from fakes.scenario_documents import NAMED, case_result, crossing, failed, matrix, told
@@ -136,10 +138,6 @@ def test_on_paper_there_are_matrix_and_opened_cases(page: Page) -> None:
     assert not page.locator(".filters").is_visible()
 
 
-def boxes(page: Page, style: str) -> list[dict[str, float]]:
-    return [found for each in page.locator(f"{CARD} .film .{style}").all() if (found := each.bounding_box())]
-
-
 def moved_to(page: Page, seconds: float) -> None:
     slider = page.locator(f"{CARD} .film-bar input")
     slider.evaluate("(s, to) => { s.value = to; s.dispatchEvent(new Event('input')); }", seconds)
@@ -149,20 +147,16 @@ def test_the_slider_of_a_film_moves_the_ego_to_its_place_of_the_record(context: 
     page = context.new_page()
     page.goto(f"{file.as_uri()}{CARD}")
     assert page.locator(f"{CARD} .moment").is_visible()
-    middles = []
+    result, history = case_result(id="pedestrian_crossing_2", agent="basic"), crossing()
+    canvas = canvas_for(what_matters(story_of(result, history)))
     for seconds in (6.0, 7.0):
         moved_to(page, seconds)
         assert not page.locator(f"{CARD} .moment").is_visible()
         assert page.locator(f"{CARD} .film-bar output").inner_text().startswith(f"{seconds:.1f} s, ego at ")
-        (box,) = boxes(page, "own")
-        middles.append(box["x"] + box["width"] / 2.0)
-    history = crossing()
-    way_m = np.diff(np.interp([6.0, 7.0], history.frames["t_s"], history.frames["x_m"]))[0]
-    dots = page.locator(f"{CARD} .scale").bounding_box()
-    text = page.locator(f"{CARD} svg.case-picture text", has_text=re.compile(r"^\d+ m$")).first.text_content() or ""
-    assert dots is not None
-    pixels_per_m = dots["width"] / float(text.removesuffix(" m"))
-    assert middles[1] - middles[0] == pytest.approx(way_m * pixels_per_m, rel=0.05)
+        middle = own_boxes(history.facts, history.frames[round(seconds / 0.05)][None])[0]
+        placed = page.locator(f"{CARD} .film .own").get_attribute("transform") or ""
+        x_px, y_px = (float(text) for text in re.findall(r"[-0-9.]+", placed)[:2])
+        assert (x_px, y_px) == pytest.approx(canvas.at(middle[0], middle[1]), abs=0.7)
 
 
 def test_a_film_plays_to_its_end_and_the_still_picture_comes_back(context: BrowserContext, file: Path) -> None:
