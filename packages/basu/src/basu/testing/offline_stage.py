@@ -59,6 +59,7 @@ SIZES_M: tuple[tuple[str, float, float], ...] = (
     ("walker.animal.deer", 0.85, 0.23),
     ("walker.animal.dog", 0.48, 0.13),
     ("walker.", 0.25, 0.25),
+    ("static.prop.dirtdebris", 0.93, 0.75),
     ("static.", 0.5, 0.5),
     ("vehicle.easymile", 2.0, 1.0),
     ("vehicle.bh", 0.85, 0.3),
