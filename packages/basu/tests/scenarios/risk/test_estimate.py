@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from basu.errors import ScenarioError
 from basu.records.partners import Partner
@@ -84,6 +85,27 @@ def test_with_counted_conflicts_the_rates_are_recovered_and_a_wrong_rate_is_not(
         held += found.low <= 9 * 100_000 * 0.1 <= found.high
         assert not found.low <= 9 * 100_000 * 0.3 <= found.high
     assert held >= 54
+
+
+def test_drives_with_importance_weights_recover_a_rare_rate_that_was_put_in() -> None:
+    """A failure lies beyond a limit of a normal distribution, and most of the drives come from near that limit."""
+    rng, drives, plain, truth = np.random.default_rng(11), 120, 0.1, 0.002
+    counted = {group: Counted(100_000, 1e6) for group in SCENARIO}
+    limit, held, narrow = norm.isf(truth), 0, 0
+    for _ in range(60):
+        at = rng.normal(np.where(rng.random(drives) < plain, 0.0, limit), 1.0)
+        weights = 1.0 / (plain + (1.0 - plain) * np.exp(limit * at - limit**2 / 2.0))
+        found = risk(
+            (
+                case(Group.PEDESTRIAN, hit=bool(place > limit))._replace(weight=float(weight), plain=plain)
+                for place, weight in zip(at, weights, strict=True)
+            ),
+            counted,
+        ).rates["crashes"]
+        held += found.low <= 100_000 * truth <= found.high
+        narrow += found.high < 2.5 * 100_000 * truth
+    assert held >= 54
+    assert narrow >= 54
 
 
 def test_control_drivers_rank_as_they_must() -> None:

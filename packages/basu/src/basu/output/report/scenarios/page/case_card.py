@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections import Counter
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any
 
 from basu.output.report.plots.chart import share, times
 from basu.output.report.scenarios.drawing.picture import case_drawing
 from basu.output.report.scenarios.tally import LOOKS, counted
-from basu.output.report.templates import DASH, TIMES, percent, render
+from basu.output.report.templates import DASH, percent, render
 from basu.scenarios.characteristics import WEATHER_OF_CASE
 
 if TYPE_CHECKING:
@@ -127,10 +127,11 @@ def _situation(case: Mapping[str, Any], history: History | None, result: Result 
 
 
 def _traffic(case: Mapping[str, Any], result: Result | None) -> list[str]:
-    """Return the scenario's actors and things, and the traffic around them."""
-    actors = Counter(f"{actor['role']} ({actor['type']})" for actor in case["actors"])
-    things = Counter(str(thing["name"]) for thing in case["things"])
-    found = [f"{name} {TIMES} {count}" if count > 1 else name for name, count in (actors + things).items()]
+    """Return the scenario's actors and things by their models, and the traffic around them."""
+    roles: dict[str, list[str]] = defaultdict(list)
+    for actor in case["actors"]:
+        roles[actor["type"]].append(actor["role"])
+    found = [f"{', '.join(names)} ({type_})" for type_, names in roles.items()]
     if result is not None:
         around = result.meta["traffic"]
         found += [f"{counted(around[f'{kind}s'], kind)} around" for kind in ("vehicle", "walker") if around[f"{kind}s"]]
