@@ -1,6 +1,7 @@
 """Claims about the bump of scenario I on a server: it lies on the road, sensors see it, and wheels roll over it."""
 
 import math
+from collections.abc import Iterator
 
 import carla
 import numpy as np
@@ -17,14 +18,15 @@ AHEAD_M, TICKS = 8.0, 160
 
 
 @pytest.fixture
-def world(simulator: RunningServer) -> carla.World:
+def world(simulator: RunningServer) -> Iterator[carla.World]:
     client = carla.Client("127.0.0.1", simulator.port)
-    client.set_timeout(60.0)
+    client.set_timeout(300.0)  # the first picture of a town waits for its scene
     world = client.load_world("Linden")
-    settings = world.get_settings()
+    before, settings = world.get_settings(), world.get_settings()
     settings.synchronous_mode, settings.fixed_delta_seconds = True, 0.05
     world.apply_settings(settings)
-    return world
+    yield world
+    world.apply_settings(before)
 
 
 def test_a_bump_is_seen_by_sensors_and_rolled_over_without_a_collision(

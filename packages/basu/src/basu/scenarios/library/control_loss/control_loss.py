@@ -13,7 +13,7 @@ from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import EgoBeyond, EgoOver, EgoPasses
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from py_trees.behaviour import Behaviour
 
@@ -72,6 +72,10 @@ class ControlLoss(Scenario):
             return []
         poses = [self.place.at(ahead_m, 0.0, ACROSS_DEG) for ahead_m in self._middles_m()]
         return [ActorSpec(_bump(number), BUMP_MODEL, pose, on_ground=False) for number, pose in enumerate(poses)]
+
+    def partners(self) -> Collection[str]:
+        """Return no partner: the ego may drive over a bump, and its own course is disturbed."""
+        return ()
 
     def _middles_m(self) -> list[float]:
         """Return the middles of wet patches or bumps, from the trigger point."""
