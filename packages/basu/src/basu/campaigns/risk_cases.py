@@ -1,7 +1,7 @@
 """The cases of a campaign as its risk for a million miles counts them: how each ended, and with which weight.
 
-A drive of an estimate counts with its importance weight. A drive that only moved an estimate's proposal, or that a
-search for the boundary has chosen, is no sample of the case, so it does not count.
+A drive of an estimate counts with its importance weight. A drive that only moved an estimate's proposal does not count.
+Neither does a drive of a search: the search chooses it at the boundary of failure, so it is no sample of the case.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ def played_in(folder: Path) -> dict[str, list[PlayedCase]]:
     """Return the cases that each agent of a campaign has driven, by its name; drives on routes are left out.
 
     Raises:
-        UserError: it is no folder of a campaign, its table is of an earlier version, no drive in it is a sample of a
-            case, or the plugin that made its estimates is not installed.
+        UserError: it is no folder of a campaign, or an earlier version drove it.
+        UserError: no drive in it is a sample of a case, or the plugin of its estimates is not installed.
     """
     agents: list[str] = read_campaign_document(folder)["agents"]
     missing = [name for name in COLUMNS if name not in open_drives(folder).schema.names]

@@ -1,8 +1,8 @@
 """NHTSA's pre-crash typology: nine groups with their yearly burden, and the 37 scenarios with their frequencies.
 
 Table 1.1 of the thesis has yearly averages of FARS and GES 2011-2015 out of DOT HS 812 745 (Swanson and others, August
-2019). Costs are in millions of dollars. A group's burden is the four columns by which groups weigh: crashes in which a
-light vehicle makes the critical action, fatal and all, their cost, and equivalent lives.
+2019). Costs are in millions of dollars. A group's burden is the four columns by which groups weigh. They are fatal and
+all crashes in which a light vehicle makes the critical action, their cost, and equivalent lives.
 
 Frequencies: DOT HS 810 767 (Najm, Smith and Yanagisawa, Pre-Crash Scenario Typology for Crash Avoidance Research, April
 2007), table 13: police-reported crashes of 2004 with a light vehicle, GES, in thousands. The figures are taken from a

@@ -39,8 +39,8 @@ WET: dict[str, float] = {
 class ControlLoss(Scenario):
     """The ego goes straight and loses control in three places: on wet patches, or over bumps.
 
-    Its steering is pulled aside and jitters with its throttle on each patch of little friction, or as long as it is
-    over a heap of dirt that lies in its lane; it has to come back into its lane and reach its target. NHTSA pre-crash
+    Its steering is pulled aside and jitters with its throttle on each patch of little friction. The same happens while
+    it is over a heap of dirt in its lane. It has to come back into its lane and reach its target. NHTSA pre-crash
     scenario: control loss without prior vehicle action. An ego that does not steer against it leaves the lane.
     """
 
