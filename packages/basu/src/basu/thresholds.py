@@ -19,7 +19,7 @@ STANDING_TRAFFIC_MPS = 0.3
 ROLLED_OVER_M = 0.2
 """A thing that is no higher than this, in m, does not obstruct: wheels roll over it, and no distance to it is judged.
 
-It is the clearance under a vehicle's body in `linden`. A shuttle's floor is lower in the middle of the body only.
+It is the clearance under a vehicle's body in `linden`.
 """
 
 

@@ -139,7 +139,7 @@ class _ActorShape(NamedTuple):
 
     @property
     def is_rolled_over(self) -> bool:
-        """Whether it is a thing so low that wheels roll over it."""
+        """Return whether it is a thing so low that wheels roll over it."""
         return not self.moves and is_rolled_over(self.top_m - self.bottom_m)
 
 

@@ -35,7 +35,7 @@ class Playable(NamedTuple):
 
     @property
     def is_of_basu(self) -> bool:
-        """Whether the class comes with BASU, and so places its actors relative to the ego's route."""
+        """Return whether the class comes with BASU. Such a class places its actors relative to the ego's route."""
         return self.scenario.__module__.startswith(f"{catalogue.__name__}.")
 
     def cast(self, scenario: Scenario) -> Sequence[ActorSpec]:

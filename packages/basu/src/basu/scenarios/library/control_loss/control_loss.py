@@ -62,7 +62,7 @@ class ControlLoss(Scenario):
 
     @property
     def places_m(self) -> list[float]:
-        """Where control is lost, along the ego's route: there wet patches begin, and the ego's front nears a bump."""
+        """Return where control is lost, along the ego's route: wet patches begin there, and bumps lie 3 m farther."""
         first_m = self.place.trigger_s_m + self.number("first")
         return [first_m + number * self.number("apart") for number in range(PLACES)]
 
