@@ -16,7 +16,7 @@ from types import ModuleType
 from basu.scenarios import actions, criteria, paths, triggers
 from basu.scenarios.cases import ALL, open_library, snake
 from basu.scenarios.listing import as_text, listed
-from basu.scenarios.nhtsa import Group, stands_for
+from basu.scenarios.nhtsa import PRINTED_SUMS, TABLE_1_1, Group, stands_for
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "reference" / "scenarios.md"
@@ -61,6 +61,25 @@ def filled(page: str) -> str:
         text = part()
         page = pattern.sub(lambda found, text=text: f"{found[1]}{text}\n{found[2]}", page)
     return page
+
+
+def table_1_1() -> str:
+    """Table 1.1 of the thesis, with its printed sums."""
+    heads = (
+        "group",
+        "fatal crashes with a light vehicle in the critical event",
+        "all crashes with one",
+        "fatal crashes in which a light vehicle makes the critical action",
+        "all such crashes",
+        "fatal, for 10⁹ miles",
+        "all, for 10⁹ miles",
+        "cost, 10⁶ $",
+        "equivalent lives",
+        "fatal for 1,000 crashes",
+    )
+    rows = [*((group.value, row) for group, row in TABLE_1_1.items()), ("sum, as printed", PRINTED_SUMS)]
+    written = ["| " + " | ".join([name, *(f"{value:,}" for value in row)]) + " |" for name, row in rows]
+    return "\n".join(["| " + " | ".join(heads) + " |", "|---" + "|---:" * (len(heads) - 1) + "|", *written])
 
 
 def catalogue() -> str:
@@ -127,6 +146,7 @@ def file(path: Path, language: str) -> Callable[[], str]:
 
 
 PARTS: dict[str, Callable[[], str]] = {
+    "table 1.1": table_1_1,
     "catalogue": catalogue,
     "triggers": members(triggers),
     "actions": members(actions),

@@ -53,8 +53,11 @@ def play(job):
         share = 1.0 / (1.0 + away)
     margins = {"distance_m": 1.0 / max(share, 1e-6) - 1.0, "ttc_s": None, "pet_s": None}  # 1/(1 + margin) is the share
     case = {
-        "verdict": "SUCCESS" if success else "FAILURE", "fault": "none", "message": "computed", "assessment": None,
-        "collisions": [], "margins": margins, "simulated_s": 20.0, "wall_s": 1.0,
+        "verdict": "SUCCESS" if success else "FAILURE", "fault": "none", "message": "computed",
+        "assessment": {"completed": {"holds": True}},
+        "collisions": [] if success else [{"speed_mps": 6.0}], "scenario": "PedestrianCrossing", "group": "pedestrian",
+        "pre_crash": [], "characteristics": {"partner": "walker"}, "margins": margins, "simulated_s": 20.0,
+        "wall_s": 1.0,
     }
     result = Result(
         outcome=Outcome(Status.SCENARIO_ENDED, "computed"), scores=Scores(share, 1.0, share), infractions=(),

@@ -39,6 +39,7 @@ class Drives(NamedTuple):
     failed: NDArray[np.float64]  # (N,) 1 failed, 0 passed, NaN not judged
     broken: NDArray[np.bool_]  # (N,) ended by a fault that is not the agent's
     ids: list[str]  # identities for `basu scenario run`
+    numbers: list[int]  # of their jobs
     weights: NDArray[np.float64]  # (N,) of an estimate; 1 in a search
     guards: NDArray[np.float64]  # (N,) probability that no failure was expected there; 0 in a search
     learns: NDArray[np.bool_]  # (N,) whether a drive only moves the proposal
@@ -181,6 +182,7 @@ def _drives(document: dict[str, Any], rows: dict[int, dict[str, Any]]) -> Drives
         np.array([each.failed for each in verdicts], dtype=np.float64),
         np.array([each.broken for each in verdicts], dtype=np.bool_),
         [row["identity"] for row in found],
+        [row["number"] for row in found],
         np.concatenate(weights),
         np.concatenate(guards),
         np.array(learns, dtype=np.bool_),

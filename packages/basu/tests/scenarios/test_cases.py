@@ -158,12 +158,12 @@ def test_an_alias_reads_scenario_runners_file_and_leaves_alone_what_only_its_cla
     )
 
 
-def test_another_actor_that_a_class_of_basu_does_not_use_is_listed_as_unread(tmp_path: Path) -> None:
+def test_the_place_of_another_actor_is_listed_as_unread_by_a_class_of_basu(tmp_path: Path) -> None:
     theirs = tmp_path / "theirs.xml"
     other = '<other_actor x="5" y="6" yaw="0" model="vehicle.audi.tt"/>'
     theirs.write_text(cases_xml(("a_1", "FollowLeadingVehicle", other), ("a_2", "FollowLeadingVehicle", "")))
     first, second = cases_of(str(theirs))
-    assert (first.unread, second.unread) == (("other_actor",), ())
+    assert (first.unread, second.unread) == (("place of other_actor",), ())
 
 
 def test_a_speed_of_scenario_runners_class_is_not_taken_for_one_of_ours(tmp_path: Path) -> None:

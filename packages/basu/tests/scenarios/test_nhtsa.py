@@ -1,14 +1,17 @@
 """Claims about table 1.1 and the 37 pre-crash scenarios as data."""
 
+import pytest
+
 from basu.scenarios.cases import open_library
 from basu.scenarios.nhtsa import (
     BURDENS,
     OTHER_THOUSANDS,
     PRE_CRASH,
-    PRINTED_TOTAL,
+    PRINTED_SUMS,
     STANDS_FOR,
-    Burden,
+    TABLE_1_1,
     Group,
+    YearlyStatistics,
     stands_for,
 )
 
@@ -18,18 +21,30 @@ def test_there_are_nine_groups_and_the_projects_own() -> None:
     assert set(Group) - set(BURDENS) == {Group.SHUTTLE}
 
 
-def test_the_rows_add_up_to_the_printed_total_but_for_rounding() -> None:
-    summed = Burden(*(sum(column) for column in zip(*BURDENS.values(), strict=True)))
-    assert (summed.crashes, summed.fatal_crashes) == (PRINTED_TOTAL.crashes, PRINTED_TOTAL.fatal_crashes)
-    assert abs(summed.cost_musd - PRINTED_TOTAL.cost_musd) <= 1
-    assert abs(summed.equivalent_lives - PRINTED_TOTAL.equivalent_lives) <= 1
+def test_the_rows_of_table_1_1_add_up_to_its_printed_sums_but_for_rounding() -> None:
+    """Four printed sums are off by 1: both columns of involved crashes, the costs, and the equivalent lives."""
+    summed = YearlyStatistics(*(sum(column) for column in zip(*TABLE_1_1.values(), strict=True)))
+    exact = ("fatal_crashes", "crashes", "per_1e9_miles")
+    assert {name: getattr(summed, name) for name in exact} == {name: getattr(PRINTED_SUMS, name) for name in exact}
+    for name in ("involved_fatal_crashes", "involved_crashes", "cost_musd", "equivalent_lives"):
+        assert abs(getattr(summed, name) - getattr(PRINTED_SUMS, name)) <= 1
+    assert summed.fatal_per_1e9_miles == pytest.approx(PRINTED_SUMS.fatal_per_1e9_miles)
 
 
-def test_the_printed_fatal_crashes_per_thousand_follow_from_the_rows() -> None:
-    """The last column of the table, which the data leave out: a slip in a digit would show here."""
-    printed = (9.5, 11.9, 0.3, 53.0, 10.8, 1.2, 32.3, 0.7, 3.5)
-    for burden, per_thousand in zip(BURDENS.values(), printed, strict=True):
-        assert abs(1000.0 * burden.fatal_crashes / burden.crashes - per_thousand) <= 0.051
+@pytest.mark.parametrize("row", [*TABLE_1_1.values(), PRINTED_SUMS])
+def test_the_rates_of_table_1_1_follow_from_its_counts(row: YearlyStatistics) -> None:
+    """A slip in a digit would show here. The miles are those by which all crashes have their rate: 2.706e12 a year."""
+    assert abs(1000.0 * row.fatal_crashes / row.crashes - row.fatal_per_thousand) <= 0.051
+    assert abs(row.fatal_crashes / 2_706.0 - row.fatal_per_1e9_miles) <= 0.051
+    assert abs(row.crashes / 2_706.0 - row.per_1e9_miles) <= 0.51
+
+
+@pytest.mark.parametrize("row", [*TABLE_1_1.values(), PRINTED_SUMS])
+def test_a_light_vehicle_makes_the_critical_action_in_some_of_the_crashes_that_involve_one(
+    row: YearlyStatistics,
+) -> None:
+    assert row.fatal_crashes <= row.involved_fatal_crashes
+    assert row.crashes <= row.involved_crashes
 
 
 def test_the_printed_costs_per_equivalent_life_are_one_figure() -> None:

@@ -88,7 +88,7 @@ def exported_case(playable: Playable, scenario: Scenario, road: str, player: str
     Raises:
         ScenarioError: it does what the player cannot express.
     """
-    specs = {spec.name: spec for spec in scenario.actors()}
+    specs = {spec.name: spec for spec in playable.cast(scenario)}
     played = rehearse(scenario, careful(EGO_MPS), step_s=STEP_S)
     phases = phases_of(played)
     motions = [motions_of(played, phases.parts, name) for name in (EGO, *specs)]

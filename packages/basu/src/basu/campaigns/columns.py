@@ -50,6 +50,12 @@ VERDICT = {
     "not_exercised": pa.int64(),  # scenarios without their conflict; they count for neither side
     "message": pa.string(),
     "severity": pa.float64(),  # 0 (good) to 1 (bad), for a ranking
+    "completed": pa.bool_(),  # of a case; null on a route, and where the policy has no answer
+    "impact_mps": pa.float64(),  # relative speed of the fastest collision of a case; null without one
+    "scenario": pa.string(),  # class of a case; null on a route
+    "group": pa.string(),
+    "pre_crash": pa.string(),  # numbers of pre-crash scenarios that a user's class declares, with spaces
+    "partner": pa.string(),
 }
 SCORES = {name: pa.float64() for name in ("driving_score", "infraction_score", "path_score")}
 MARGINS = {f"margin_{name}": pa.float64() for name in ("distance_m", "ttc_s", "pet_s")}
@@ -97,6 +103,8 @@ def columns_of(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
     values |= {"judged": row["passed"] is not None, "success": row["passed"]}
     values |= {f"margin_{name}": value for name, value in row["margins"].items()}
     values |= {f"version_{name}": text for name, text in versions().items()}
+    if result.case is not None:
+        values |= _of_case(result.case)
     if result.scores is not None:
         scores = result.scores
         values |= {
@@ -110,6 +118,19 @@ def columns_of(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
         for metric in own:
             values |= dict(_values(f"own_{metric.name}", metric.schema, row["own"].get(metric.name)))
     return values
+
+
+def _of_case(case: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the columns of a case that its risk for a million miles needs."""
+    assessment = case["assessment"]
+    return {
+        "completed": None if assessment is None else assessment["completed"]["holds"],
+        "impact_mps": max((hit["speed_mps"] for hit in case["collisions"]), default=None),
+        "scenario": case["scenario"],
+        "group": case["group"],
+        "pre_crash": " ".join(str(number) for number in case["pre_crash"]),
+        "partner": case["characteristics"]["partner"],
+    }
 
 
 def _kind(schema: Schema) -> str:

@@ -31,6 +31,13 @@ class SearchKey(NamedTuple):
     agent: int
 
 
+class DriveWeight(NamedTuple):
+    """What a drive counts in a rate: its importance weight, and the share of plain drives in its mixture."""
+
+    weight: float = 1.0
+    plain: float = 1.0
+
+
 class SearchPlace(NamedTuple):
     """The place of a job in its search."""
 
@@ -142,6 +149,9 @@ class SearchPlugin(Protocol):
 
     def states(self, plan: CampaignPlan, folder: Path) -> SearchStates:
         """Return the states of all searches of a campaign, which lie in its folder."""
+
+    def weights(self, folder: Path, table: pa.Table) -> Mapping[int, DriveWeight | None]:
+        """Return the weight of each drive of searches and estimates, by its number; None if it is no sample."""
 
     def section(self, folder: Path, table: pa.Table, confidence: float) -> Markup:
         """Return the section of a campaign's report on its searches and estimates."""

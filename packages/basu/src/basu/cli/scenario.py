@@ -32,10 +32,12 @@ def add_scenario(scenario: argparse.ArgumentParser) -> None:
 def _add_risk(risk: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu scenario risk``."""
     risk.description = (
-        "Show the crashes, injuries, falls and disengagements that the agents of a run are expected to have in a "
-        "million miles, with intervals, and write risk.html and risk.json beside the run's page."
+        "Show the crashes, injuries, falls and disengagements that the agents of a run or a campaign are expected to "
+        "have in a million miles, with intervals, and write risk.html and risk.json into its folder."
     )
-    risk.add_argument("folder", type=Path, metavar="FOLDER", help="of a run, such as scenario-runs/latest")
+    risk.add_argument(
+        "folder", type=Path, metavar="FOLDER", help="of a run or a campaign, such as scenario-runs/latest"
+    )
     risk.add_argument(
         "--encounters",
         type=Path,

@@ -10,6 +10,7 @@ import carla
 from basu.records.history.model import NEAR_M, NEAREST, NO_LIGHT, Vehicle
 from basu.records.placed_motion import PlacedMotion, own_motion
 from basu.routing import ControlKind
+from basu.thresholds import is_rolled_over
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Ego, Frame
@@ -127,6 +128,7 @@ class _ActorShape(NamedTuple):
     x_m: float
     y_m: float
     bottom_m: float
+    top_m: float
     half_length_m: float
     half_width_m: float
 
@@ -134,6 +136,11 @@ class _ActorShape(NamedTuple):
     def moves(self) -> bool:
         """Whether it is a vehicle or a walker."""
         return self.type_id.startswith(MOVING_KINDS)
+
+    @property
+    def is_rolled_over(self) -> bool:
+        """Return whether it is a thing so low that wheels roll over it."""
+        return not self.moves and is_rolled_over(self.top_m - self.bottom_m)
 
 
 class Neighbours:
@@ -170,7 +177,7 @@ class Neighbours:
                 continue
             if shape.moves:
                 moving.append((away_m, actor_id, actor))
-            elif at.z + shape.bottom_m < frame.ego.z_m + OVERHEAD_M:
+            elif at.z + shape.bottom_m < frame.ego.z_m + OVERHEAD_M and not shape.is_rolled_over:
                 things.append((away_m, actor_id, actor))
         chosen = [*sorted(moving)[:NEAREST], *sorted(things)[:NEAREST]]
         t_s = frame.snapshot.timestamp.elapsed_seconds
@@ -214,6 +221,7 @@ def _shape(actor: carla.Actor) -> _ActorShape:
         x_m=box.location.x,
         y_m=box.location.y,
         bottom_m=box.location.z - box.extent.z,
+        top_m=box.location.z + box.extent.z,
         half_length_m=max(box.extent.x, SMALLEST_M),
         half_width_m=max(box.extent.y, SMALLEST_M),
     )

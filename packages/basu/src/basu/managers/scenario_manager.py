@@ -149,7 +149,7 @@ class ScenarioManager(BaseManager):
         return [
             (spec.pose.x_m, spec.pose.y_m)
             for placed in self._placed
-            for spec in call_scenario(placed.planned.case.name, placed.scenario.actors)
+            for spec in call_scenario(placed.planned.case.name, partial(placed.planned.cast, placed.scenario))
         ]
 
     def try_out(self, client: carla.Client, world: carla.World) -> None:
@@ -160,7 +160,7 @@ class ScenarioManager(BaseManager):
         """
         for placed in self._placed:
             name = placed.planned.case.name
-            cast = spawn_actors(client, world, call_scenario(name, placed.scenario.actors), name)
+            cast = spawn_actors(client, world, call_scenario(name, partial(placed.planned.cast, placed.scenario)), name)
             destroy_actors(client, [member.actor for member in cast])
 
     def tick(self, frame: Frame) -> None:
@@ -221,7 +221,7 @@ class ScenarioManager(BaseManager):
 
     def _bring(self, playing: Playing) -> None:
         """Bring the cast; on a route, actors that the ego would reach from behind come when it has passed."""
-        cast = call_scenario(playing.planned.case.name, playing.scenario.actors)
+        cast = call_scenario(playing.planned.case.name, partial(playing.planned.cast, playing.scenario))
         playing.stage.enter(
             cast if self._own else [spec for spec in cast if not is_behind(playing.scenario.place, spec)]
         )

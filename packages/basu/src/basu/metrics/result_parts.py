@@ -232,6 +232,7 @@ class ThingPart(TypedDict):
     half_width_m: Amount
     from_s: NotRequired[Annotated[float, "when it came to stand there"]]
     until_s: NotRequired[Annotated[float | None, "when it was put elsewhere or taken away"]]
+    rolled_over: NotRequired[Annotated[bool, "whether it is so low that wheels roll over it"]]
 
 
 PreCrash = Annotated[

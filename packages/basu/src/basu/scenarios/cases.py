@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from basu import plugins
 from basu.errors import ScenarioError
-from basu.scenarios import library as catalogue
 from basu.scenarios.case_xml import read_cases
 from basu.scenarios.class_file import own_scenarios, users_scenarios
 from basu.scenarios.nhtsa import Group
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from basu.scenarios.xml_elements import Case
 
 OWN_SUFFIXES = (".py", ".xml")  # of files that hold scenarios; plugins read others
-OTHER_ACTOR = "other_actor"
+OTHER_ACTOR = "place of other_actor"
 LIBRARY = Path(__file__).parent / "library"  # the cases that come with BASU: <group>/<type in snake case>.xml
 ALL = "all"
 GROUP = "group:"  # before a group's name where a type is called the same
@@ -346,9 +345,8 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
     unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
     values = read_values(*narrowed(scenario.parameters, given))
-    if case.others and scenario.__module__.startswith(f"{catalogue.__name__}."):
-        unread += (OTHER_ACTOR,)  # BASU's own classes place their actors relative to the ego's route
-    return Playable(scenario.settled(case, values), scenario, values, unread)
+    playable = Playable(scenario.settled(case, values), scenario, values, unread)
+    return playable._replace(unread=(*unread, OTHER_ACTOR)) if case.others and playable.is_of_basu else playable
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.xml_elements import Case
 
+WEATHER_OF_CASE = "of the case"  # the name of the weather of a drive without --weather
 TWILIGHT_DEG = -6.0  # civil twilight: the sun's centre is up to 6 degrees below the horizon
 WET_PERCENT, FOG_PERCENT, CLOUDY_PERCENT = 20.0, 15.0, 50.0  # of carla.WeatherParameters, from there on
 BEND_RAD_PER_M = 1.0 / 100.0  # a radius of 100 m and less

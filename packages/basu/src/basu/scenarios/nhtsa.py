@@ -1,7 +1,8 @@
 """NHTSA's pre-crash typology: nine groups with their yearly burden, and the 37 scenarios with their frequencies.
 
-Burden: yearly averages of FARS and GES 2011-2015, crashes in which a light vehicle makes the critical action, as table
-1.1 of the thesis prints them out of DOT HS 812 745 (Swanson and others, August 2019). Costs are in millions of dollars.
+Table 1.1 of the thesis has yearly averages of FARS and GES 2011-2015 out of DOT HS 812 745 (Swanson and others, August
+2019). Costs are in millions of dollars. A group's burden is the four columns by which groups weigh. They are fatal and
+all crashes in which a light vehicle makes the critical action, their cost, and equivalent lives.
 
 Frequencies: DOT HS 810 767 (Najm, Smith and Yanagisawa, Pre-Crash Scenario Typology for Crash Avoidance Research, April
 2007), table 13: police-reported crashes of 2004 with a light vehicle, GES, in thousands. The figures are taken from a
@@ -39,30 +40,39 @@ class Burden(NamedTuple):
     equivalent_lives: int
 
 
-BURDENS: dict[Group, Burden] = {
-    Group.CONTROL_LOSS: Burden(4_456, 470_733, 77_507, 8_474),
-    Group.ROAD_DEPARTURE: Burden(6_500, 547_098, 97_737, 10_686),
-    Group.ANIMAL: Burden(102, 297_968, 6_231, 681),
-    Group.PEDESTRIAN: Burden(3_731, 70_461, 47_342, 5_176),
-    Group.PEDALCYCLIST: Burden(518, 47_927, 12_146, 1_328),
-    Group.LANE_CHANGE: Burden(752, 644_099, 32_935, 3_601),
-    Group.OPPOSITE_DIRECTION: Burden(3_258, 100_786, 48_255, 5_276),
-    Group.REAR_END: Burden(1_245, 1_709_717, 106_515, 11_646),
-    Group.CROSSING_PATHS: Burden(3_972, 1_131_273, 135_406, 14_805),
+class YearlyStatistics(NamedTuple):
+    """The nine columns of table 1.1, as yearly averages of crashes in which a light vehicle takes part."""
+
+    involved_fatal_crashes: int  # with a light vehicle in the critical event
+    involved_crashes: int
+    fatal_crashes: int  # from here on a light vehicle makes the critical action
+    crashes: int
+    fatal_per_1e9_miles: float  # crashes for 10^9 miles of light vehicles
+    per_1e9_miles: int
+    cost_musd: int
+    equivalent_lives: int
+    fatal_per_thousand: float  # fatal crashes for a thousand crashes
+
+    @property
+    def burden(self) -> Burden:
+        """Return the four columns by which groups weigh."""
+        return Burden(self.fatal_crashes, self.crashes, self.cost_musd, self.equivalent_lives)
+
+
+TABLE_1_1: dict[Group, YearlyStatistics] = {
+    Group.CONTROL_LOSS: YearlyStatistics(4_529, 473_392, 4_456, 470_733, 1.6, 174, 77_507, 8_474, 9.5),
+    Group.ROAD_DEPARTURE: YearlyStatistics(6_536, 562_564, 6_500, 547_098, 2.4, 202, 97_737, 10_686, 11.9),
+    Group.ANIMAL: YearlyStatistics(103, 298_106, 102, 297_968, 0.0, 110, 6_231, 681, 0.3),
+    Group.PEDESTRIAN: YearlyStatistics(3_732, 70_525, 3_731, 70_461, 1.4, 26, 47_342, 5_176, 53.0),
+    Group.PEDALCYCLIST: YearlyStatistics(518, 47_927, 518, 47_927, 0.2, 18, 12_146, 1_328, 10.8),
+    Group.LANE_CHANGE: YearlyStatistics(875, 697_888, 752, 644_099, 0.3, 238, 32_935, 3_601, 1.2),
+    Group.OPPOSITE_DIRECTION: YearlyStatistics(3_288, 100_993, 3_258, 100_786, 1.2, 37, 48_255, 5_276, 32.3),
+    Group.REAR_END: YearlyStatistics(1_623, 1_756_327, 1_245, 1_709_717, 0.5, 632, 106_515, 11_646, 0.7),
+    Group.CROSSING_PATHS: YearlyStatistics(4_086, 1_152_112, 3_972, 1_131_273, 1.5, 418, 135_406, 14_805, 3.5),
 }
-PER_1E9_MILES: dict[Group, int] = {  # crashes for 10^9 vehicle miles, another column of the table
-    Group.CONTROL_LOSS: 174,
-    Group.ROAD_DEPARTURE: 202,
-    Group.ANIMAL: 110,
-    Group.PEDESTRIAN: 26,
-    Group.PEDALCYCLIST: 18,
-    Group.LANE_CHANGE: 238,
-    Group.OPPOSITE_DIRECTION: 37,
-    Group.REAR_END: 632,
-    Group.CROSSING_PATHS: 418,
-}
-PRINTED_PER_1E9_MILES = 1_855  # as the table has the sum
-PRINTED_TOTAL = Burden(24_534, 5_020_062, 564_073, 61_674)  # as the table has it; sums differ by rounding
+# As the table prints its sums; they differ from the sums of the rows by rounding.
+PRINTED_SUMS = YearlyStatistics(25_289, 5_159_833, 24_534, 5_020_062, 9.1, 1_855, 564_073, 61_674, 4.9)
+BURDENS = {group: row.burden for group, row in TABLE_1_1.items()}
 
 
 class PreCrash(NamedTuple):

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import ScenarioError
+from basu.scenarios import library as catalogue
 from basu.scenarios.characteristics import characteristics_of, read_where
+from basu.scenarios.named_models import with_named_models
 from basu.scenarios.nhtsa import stands_for
 from basu.scenarios.parameters import narrowed
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
 
     from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.scenario import Scenario
+    from basu.scenarios.stage import ActorSpec
     from basu.scenarios.xml_elements import Case
 
 
@@ -29,6 +32,22 @@ class Playable(NamedTuple):
     def parameters(self) -> tuple[Parameter, ...]:
         """The scenario's, as the case narrows them for its place."""
         return narrowed(self.scenario.parameters, self.case.values)[0]
+
+    @property
+    def is_of_basu(self) -> bool:
+        """Return whether the class comes with BASU. Such a class places its actors relative to the ego's route."""
+        return self.scenario.__module__.startswith(f"{catalogue.__name__}.")
+
+    def cast(self, scenario: Scenario) -> Sequence[ActorSpec]:
+        """Return the actors of ``scenario``, this case at its place, with the models that the case's file names.
+
+        Raises:
+            ScenarioError: an ``<other_actor>`` belongs to none of them, or names a model of another kind.
+        """
+        specs = scenario.actors()
+        if not self.case.others or not self.is_of_basu:
+            return specs
+        return with_named_models(specs, self.case.others, self.scenario.__name__)
 
     def about(self) -> dict[str, Any]:
         """Which case of which scenario, and its parameters, as plain values for a result."""

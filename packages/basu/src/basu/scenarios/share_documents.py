@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.scenarios.nhtsa import BURDENS, PRINTED_TOTAL, Group
+from basu.scenarios.nhtsa import BURDENS, PRINTED_SUMS, Group
 from basu.scenarios.shares import CountedCase
 from basu.scenarios.verdict import Verdict
 
@@ -96,7 +96,7 @@ def shares_to_json(found: CrashShares) -> dict[str, Any]:
         "narrowest": [
             {"scenario": one.scenario, "least": dict(one.least), "cases": dict(one.cases)} for one in found.narrowest
         ],
-        "printed_total": PRINTED_TOTAL._asdict(),
+        "printed_total": PRINTED_SUMS.burden._asdict(),
         "sentence": sentence(found),
         "assumptions": list(ASSUMPTIONS),
     }

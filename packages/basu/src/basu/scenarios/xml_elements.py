@@ -29,6 +29,7 @@ class GivenActor:
     pose: Pose
     attributes: tuple[tuple[str, str], ...] = ()  # such as ("color", "255,0,0")
     speed_mps: float = 0.0
+    source: str = ""  # file and line, for sentences
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +57,7 @@ class Case:
 
 EGO_MODEL = "vehicle.easymile.ez10"  # of an <ego_vehicle> without `model`: the shuttle
 OTHER_MODEL = "vehicle.*"  # likewise, as in ScenarioRunner
+NO_ROLE = "scenario"  # of an <other_actor> without `rolename`, as in ScenarioRunner
 EGO_ATTRIBUTES = ("x", "y", "z", "yaw", "model", "rolename")
 OTHER_ATTRIBUTES = (*EGO_ATTRIBUTES, "speed", "color")
 POINT_ATTRIBUTES = ("x", "y", "z", "yaw")
@@ -161,11 +163,12 @@ def other_of(element: etree._Element, path: Path) -> GivenActor:
     only(element, OTHER_ATTRIBUTES, path)
     color = element.get("color")
     return GivenActor(
-        role=element.get("rolename", "scenario"),
+        role=element.get("rolename", NO_ROLE),
         model=element.get("model", OTHER_MODEL),
         pose=pose_of(element, path, yaw=True),
         attributes=() if color is None else (("color", color),),
         speed_mps=number_of(element, "speed", path, 0.0),
+        source=where(element, path),
     )
 
 

@@ -59,6 +59,7 @@ SIZES_M: tuple[tuple[str, float, float], ...] = (
     ("walker.animal.deer", 0.85, 0.23),
     ("walker.animal.dog", 0.48, 0.13),
     ("walker.", 0.25, 0.25),
+    ("static.prop.dirtdebris", 0.93, 0.75),
     ("static.", 0.5, 0.5),
     ("vehicle.easymile", 2.0, 1.0),
     ("vehicle.bh", 0.85, 0.3),
@@ -73,6 +74,7 @@ SIZES_M: tuple[tuple[str, float, float], ...] = (
     ("vehicle.mercedes.sprinter", 2.96, 1.0),
     ("", 2.3, 0.95),
 )
+ROLLED_OVER = ("static.prop.dirtdebris",)  # beginnings of blueprints that wheels roll over: 0.15 to 0.19 m high
 
 
 class _Led(NamedTuple):
@@ -94,6 +96,8 @@ class StageCommand(NamedTuple):
 
 class OfflineStage:
     """See ``basu.scenarios.stage.Stage``. ``advance`` carries a frame's commands out.
+
+    ``rolled_over`` has the names of things that wheels roll over. The ego does not touch them.
 
     The ego keeps to its route whatever is done to its controls; ``controls`` says what they would be. With
     ``turn_share`` below 1 bodies turn by that share of their command, as a simulated vehicle's tyres let it.
@@ -120,6 +124,7 @@ class OfflineStage:
         self._touched: frozenset[str] = frozenset()
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies = {spec.name: _entering(spec) for spec in cast}
+        self.rolled_over = frozenset(spec.name for spec in cast if spec.blueprint.startswith(ROLLED_OVER))
         self._led: dict[str, _Led] = {
             name: _Led(body.velocity_x_mps, body.velocity_y_mps, 0.0) for name, body in self._bodies.items()
         }
@@ -243,7 +248,9 @@ class OfflineStage:
         self._ego_s_m = min(self._ego_s_m + speed_mps * self.step_s, self.route.length_m)
         self._bodies[EGO] = self._ego_body(speed_mps if self._ego_s_m < self.route.length_m else 0.0)
         self._ticks += 1
-        self._touched |= {name for name in self._led if self._touches(self._bodies[name])}
+        self._touched |= {
+            name for name in self._led if name not in self.rolled_over and self._touches(self._bodies[name])
+        }
 
     def _moved(self, body: ActorBox, led: _Led) -> tuple[ActorBox, _Led]:
         """A body a frame later, and its command from then on."""

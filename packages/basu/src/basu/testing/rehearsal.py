@@ -65,7 +65,8 @@ def careful(speed_mps: float, brake_mps2: float = 5.0, keeps_m: float = 3.0) -> 
         way = way or Path.through(stage.route.points_m)
         now_mps, allowed_mps = stage.ego.forward_mps, speed_mps
         for name in stage.names:
-            ahead = None if name == EGO else gap_ahead(way, stage.ego_s_m, stage.ego, stage.body(name))
+            is_passed = name == EGO or name in stage.rolled_over
+            ahead = None if is_passed else gap_ahead(way, stage.ego_s_m, stage.ego, stage.body(name))
             if ahead is not None:
                 room_m = max(0.0, ahead.gap_m - keeps_m)
                 allowed_mps = min(allowed_mps, math.sqrt(ahead.speed_mps**2 + 2.0 * 0.6 * brake_mps2 * room_m))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from basu.scenarios.actions import Bump, Either, JitterControls, PullSteering, Wait
+from basu.scenarios.actions import Either, JitterControls, PullSteering, Wait
 from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.stage import Controls
 from basu.testing import OfflineStage
@@ -52,15 +52,6 @@ def test_the_steering_that_pulls_rises_and_stays() -> None:
     rows, _ = disturbed(PullSteering(-0.4, 3.0, rising_s=0.5))
     assert rows[0, 1] == pytest.approx(0.1 - 0.04)
     assert rows[9:-1, 1] == pytest.approx(-0.3)
-
-
-def test_a_bump_is_over_at_once_and_is_highest_in_its_middle() -> None:
-    action = Bump(0.6, 0.4)
-    rows, stage = disturbed(action)
-    assert stage.time_s == pytest.approx(0.4)
-    assert rows[:-1, 1].max() == pytest.approx(0.7, abs=0.02)
-    assert rows[0, 1] < 0.25
-    assert action.feedback_message == "0.4 s, steering off by up to 0.59"
 
 
 @pytest.mark.parametrize("ended", ["done", "broken off"])

@@ -5,26 +5,33 @@ nearest to a partner, or where a partner first comes into the ego's lane. What a
 of one of these three places.
 """
 
+import re
 from collections.abc import Callable, Collection
+from pathlib import Path as File
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import linden
+from basu.records.partners import Partner, partner_of
 from basu.scenarios.cases import open_library
-from basu.scenarios.characteristics import Surface, Violation, characteristics_of
+from basu.scenarios.characteristics import Obstruction, Surface, Violation, characteristics_of
 from basu.scenarios.paths import Path
+from basu.scenarios.risk.injuries import MPH_MPS
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO
+from basu.scenarios.suites.suite import read_suite
 from basu.testing import careful, rehearse, steady
 from basu.testing.rehearsal import Driver, Rehearsal
-from road_there import RoadThere, road_there
+from road_there import HIGHWAY_MPS, RoadThere, road_there
 
 Laid = Callable[..., Scenario]
 LIBRARY = open_library()
 SHUTTLE_MPS = 6.0
 MOVED_M = 0.5
+HALF_CAR_M = 1.0
 OVER_MPS = 1.0  # above the posted limit, from where another speeds
 SIGNALS = {Violation.RED_LIGHT: "1000001", Violation.STOP_SIGN: "206"}
 AHEAD_M = 80.0  # of another's start, in which it passes the sign or the light
@@ -106,6 +113,39 @@ def test_another_breaks_the_rule_of_the_road_that_its_case_states(laid: Laid, na
         assert found.partner is not None
         start = scenario.place.carla_map.get_waypoint(_location(scenario, found.partner))
         assert start.get_landmarks_of_type(AHEAD_M, SIGNALS[stated])
+
+
+@pytest.mark.parametrize("name", [case.name for case in LIBRARY.cases])
+def test_the_stated_partner_is_in_the_cast_and_a_stated_obstruction_hides_it(laid: Laid, name: str) -> None:
+    (playable,) = LIBRARY.of_id(name)
+    stated, scenario = characteristics_of(playable.case, playable.scenario), laid(name)
+    cast = {spec.name: partner_of(spec.blueprint) for spec in scenario.actors()}
+    if stated.partner not in (Partner.NONE, Partner.SIGN, Partner.LIGHT):
+        assert stated.partner in cast.values()
+    if stated.obstruction is Obstruction.VEHICLE:
+        played = rehearse(scenario, steady(SHUTTLE_MPS))
+        vehicles = [role for role, kind in cast.items() if kind is Partner.VEHICLE]
+        hidden = [(one, by) for one in cast for by in vehicles if one != by and _is_hidden(played, one, by)]
+        assert hidden, cast
+
+
+def _is_hidden(played: Rehearsal, one: str, by: str) -> bool:
+    """Whether the line from the ego to an actor passes within half a car's width of another one's middle."""
+    ego, partner, other = (played.trails[role][:, :2] for role in (EGO, one, by))
+    way, away = partner - ego, other - ego
+    along = np.clip((way * away).sum(axis=1) / np.maximum((way**2).sum(axis=1), 1e-9), 0.0, 1.0)
+    return bool((np.hypot(*(away - along[:, None] * way).T)[(along > 0.0) & (along < 1.0)] < HALF_CAR_M).any())
+
+
+@pytest.mark.parametrize("town", ["Linden", "Linden_thesis"])
+def test_linden_has_no_highway_so_no_case_can_have_one(town: str) -> None:
+    text = (File(linden.__file__).parent / "data" / f"{town}.xodr").read_text(encoding="utf-8")
+    posted = {(float(most), unit) for most, unit in re.findall(r'<speed [^>]*max="([0-9.]+)"[^>]*unit="(.*?)"', text)}
+    assert {unit for _, unit in posted} == {"mph"}
+    assert max(most for most, _ in posted) == 35.0
+    assert 35.0 * MPH_MPS < HIGHWAY_MPS < 45.1 * MPH_MPS
+    about = " ".join(read_suite("nhtsa").about)
+    assert "No case lies on a highway: the map of Linden posts 35 mph at the most" in about
 
 
 def _location(scenario: Scenario, role: str) -> object:

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from basu.errors import ScenarioError
 from basu.records.partners import Partner
-from basu.scenarios.nhtsa import BURDENS, PER_1E9_MILES, PRINTED_PER_1E9_MILES, Group
+from basu.scenarios.nhtsa import PRINTED_SUMS, TABLE_1_1, Group
 from basu.scenarios.risk.estimate import KINDS, PlayedCase, Risk, risk
 from basu.scenarios.risk.exposure import CONFLICTS, REPORTED, Counted, encounters, read_exposure
 from basu.scenarios.risk.injuries import MPH_MPS, middle, severe
@@ -42,20 +43,20 @@ def driven(crashes: Mapping[Group, int], trials: int) -> Risk:
 
 
 def test_the_rates_of_the_groups_add_up_to_the_printed_total() -> None:
-    assert sum(PER_1E9_MILES.values()) == PRINTED_PER_1E9_MILES
+    assert sum(row.per_1e9_miles for row in TABLE_1_1.values()) == PRINTED_SUMS.per_1e9_miles
 
 
 def test_each_rate_is_its_groups_crashes_over_one_number_of_miles() -> None:
     """2.7 * 10^12 miles a year in each row: a slip in a digit would show here."""
-    for group, burden in BURDENS.items():
-        assert burden.crashes / PER_1E9_MILES[group] == pytest.approx(2_706.0, rel=0.03)
+    for row in TABLE_1_1.values():
+        assert row.crashes / row.per_1e9_miles == pytest.approx(2_706.0, rel=0.03)
 
 
 def test_a_driver_with_the_conflicts_of_the_study_has_the_crashes_of_the_table() -> None:
     found = driven(dict.fromkeys(SCENARIO, REPORTED), CONFLICTS)
-    assert found.rates["crashes"].value == pytest.approx(PRINTED_PER_1E9_MILES / 1000.0)
-    assert found.rates["crashes"].low < PRINTED_PER_1E9_MILES / 1000.0 < found.rates["crashes"].high
-    assert sum(group.reported for group in found.groups) == pytest.approx(PRINTED_PER_1E9_MILES / 1000.0)
+    assert found.rates["crashes"].value == pytest.approx(PRINTED_SUMS.per_1e9_miles / 1000.0)
+    assert found.rates["crashes"].low < PRINTED_SUMS.per_1e9_miles / 1000.0 < found.rates["crashes"].high
+    assert sum(group.reported for group in found.groups) == pytest.approx(PRINTED_SUMS.per_1e9_miles / 1000.0)
 
 
 @pytest.mark.parametrize("rates", [(0.02, 0.1), (0.3, 0.6)])
@@ -84,6 +85,27 @@ def test_with_counted_conflicts_the_rates_are_recovered_and_a_wrong_rate_is_not(
         held += found.low <= 9 * 100_000 * 0.1 <= found.high
         assert not found.low <= 9 * 100_000 * 0.3 <= found.high
     assert held >= 54
+
+
+def test_drives_with_importance_weights_recover_a_rare_rate_that_was_put_in() -> None:
+    """A failure lies beyond a limit of a normal distribution, and most of the drives come from near that limit."""
+    rng, drives, plain, truth = np.random.default_rng(11), 120, 0.1, 0.002
+    counted = {group: Counted(100_000, 1e6) for group in SCENARIO}
+    limit, held, narrow = norm.isf(truth), 0, 0
+    for _ in range(60):
+        at = rng.normal(np.where(rng.random(drives) < plain, 0.0, limit), 1.0)
+        weights = 1.0 / (plain + (1.0 - plain) * np.exp(limit * at - limit**2 / 2.0))
+        found = risk(
+            (
+                case(Group.PEDESTRIAN, hit=bool(place > limit))._replace(weight=float(weight), plain=plain)
+                for place, weight in zip(at, weights, strict=True)
+            ),
+            counted,
+        ).rates["crashes"]
+        held += found.low <= 100_000 * truth <= found.high
+        narrow += found.high < 2.5 * 100_000 * truth
+    assert held >= 54
+    assert narrow >= 54
 
 
 def test_control_drivers_rank_as_they_must() -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.records.partners import ANIMALS, Partner, partner_of
 from basu.records.placed_motion import PlacedMotion, PlanarMotion, own_motion
+from basu.thresholds import is_rolled_over
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -135,8 +136,8 @@ class Census:
         self._shapes.update(dict.fromkeys(ids))
         for actor in self._world.get_actors(ids):
             kind = next((k for prefix, k in KIND_OF_PREFIX.items() if actor.type_id.startswith(prefix)), None)
-            if kind is not None:
-                box = actor.bounding_box
+            box = actor.bounding_box
+            if kind is not None and not (kind is ActorKind.PROP and is_rolled_over(2.0 * box.extent.z)):
                 length_m, width_m, height_m = (max(half_m, SMALLEST_M) for half_m in _vector(box.extent))
                 self._shapes[actor.id] = _Shape(
                     kind, partner_of(actor.type_id), length_m, width_m, height_m, box.location.x, box.location.z

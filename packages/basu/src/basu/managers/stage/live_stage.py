@@ -14,6 +14,7 @@ from basu.managers.stage.environment import Surroundings
 from basu.managers.stage.scenario_actors import ActorCommands, destroy_actors, member_of, spawn_actors
 from basu.scenarios.criteria.criterion import Move, StandingThing
 from basu.scenarios.stage import EGO, ActorBox
+from basu.thresholds import is_rolled_over
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -124,10 +125,19 @@ class LiveStage:
 
     def things(self) -> tuple[StandingThing, ...]:
         """Those of the cast that are neither vehicle nor walker."""
-        bodies = [(name, self.body(name)) for name, member in self._cast.items() if member.kind == "static"]
+        members = [member for member in self._cast.values() if member.kind == "static"]
+        bodies = [(member, self.body(member.name)) for member in members]
         return tuple(
-            StandingThing(name, body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m)
-            for name, body in bodies
+            StandingThing(
+                member.name,
+                body.x_m,
+                body.y_m,
+                body.yaw_rad,
+                body.half_length_m,
+                body.half_width_m,
+                rolled_over=is_rolled_over(member.height_m),
+            )
+            for member, body in bodies
         )
 
     @property

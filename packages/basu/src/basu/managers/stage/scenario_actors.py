@@ -39,6 +39,7 @@ class Member(NamedTuple):
     box_x_m: float  # of the box's middle before the actor's origin
     half_length_m: float
     half_width_m: float
+    height_m: float
 
 
 def spawn_actors(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], case: str) -> list[Member]:
@@ -79,7 +80,13 @@ def member_of(actor: carla.Actor, name: str) -> Member:
     box = actor.bounding_box
     kind = actor.type_id.split(".", 1)[0]
     return Member(
-        actor, name, kind, float(box.location.x), max(float(box.extent.x), 0.1), max(float(box.extent.y), 0.1)
+        actor=actor,
+        name=name,
+        kind=kind,
+        box_x_m=float(box.location.x),
+        half_length_m=max(float(box.extent.x), 0.1),
+        half_width_m=max(float(box.extent.y), 0.1),
+        height_m=2.0 * float(box.extent.z),
     )
 
 

@@ -28,6 +28,7 @@ from basu.running.preparation import agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
 from basu.running.shuttles import SensorSet, Shuttle
+from basu.scenarios.characteristics import WEATHER_OF_CASE
 from basu.scenarios.verdict import judge as verdict_of
 
 if TYPE_CHECKING:
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
 
 
 NO_OTHERS = {"vehicles": 0, "walkers": 0}
-OF_CASE = "of the case"  # the weather of a drive without --weather
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ def play_case(
                 RouteDescription(
                     id=playable.case.name, town=playable.case.town, points=(), stops=(), source=playable.case.source
                 ),
-                weather=options.weather or OF_CASE,
+                weather=options.weather or WEATHER_OF_CASE,
                 own_simulator=session.simulator.own,
                 started=started,
                 seed=options.seed,

@@ -2,7 +2,7 @@
 
 from basu.scenarios.actions.cut_in import SlowerUntilTtc
 from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
-from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering
+from basu.scenarios.actions.ego_controls import JitterControls, PullSteering
 from basu.scenarios.actions.maneuvers import Accelerate, BackUp, Brake, ChangeLane, Drift, Hold
 from basu.scenarios.actions.one_frame import (
     Action,
@@ -28,7 +28,6 @@ __all__ = [
     "Action",
     "BackUp",
     "Brake",
-    "Bump",
     "ChangeLane",
     "CloseDoor",
     "Drift",

@@ -1,4 +1,4 @@
-"""Disturbances of the ego's controls as actions: correlated noise, a constant steering offset, a steering pulse."""
+"""Disturbances of the ego's controls as actions: correlated noise, a constant steering offset."""
 
 from __future__ import annotations
 
@@ -89,15 +89,3 @@ class PullSteering(_Disturbance):
     def change(self, elapsed_s: float) -> None:
         """More, until it is all there."""
         self.steer = self.amount * min(1.0, (elapsed_s + self.stage.step_s) / self.rising_s)
-
-
-class Bump(_Disturbance):
-    """A jolt of the steering: half a sine of this height over a moment."""
-
-    def __init__(self, steer: float, seconds: float = 0.4) -> None:
-        super().__init__(f"a bump to the {'right' if steer > 0.0 else 'left'}", seconds)
-        self.height = steer
-
-    def change(self, elapsed_s: float) -> None:
-        """The sine."""
-        self.steer = self.height * math.sin(math.pi * min(1.0, (elapsed_s + self.stage.step_s / 2.0) / self.seconds))

@@ -34,6 +34,7 @@ class StandingThing(NamedTuple):
     half_width_m: float
     from_s: float = 0.0  # when it came to stand there, on the record's clock
     until_s: float | None = None  # when it was put elsewhere or taken away; None: it stayed
+    rolled_over: bool = False  # so low that wheels roll over it: no distance to it is judged
 
 
 class Move(NamedTuple):

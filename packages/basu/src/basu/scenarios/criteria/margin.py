@@ -57,14 +57,18 @@ class Present(NamedTuple):
 def present_in(played: Played) -> Present:
     """The record with a row for each thing in each frame in which it was as near as others are recorded.
 
-    Things are actors without a row of their own, so their contacts have the same ids.
+    Things that wheels roll over have no rows and are no partners. Other things are actors without a row of their own,
+    so their contacts have the same ids.
     """
     history, facts = played.history, played.history.facts
-    names, sizes = dict(played.roles), dict(facts.actor_sizes)
-    key_of = {name: LAST_ID - number for number, name in enumerate(dict.fromkeys(t.name for t in played.things))}
+    standing = [thing for thing in played.things if not thing.rolled_over]
+    low = {thing.name for thing in played.things if thing.rolled_over}
+    names = {key: role for key, role in played.roles.items() if role not in low}
+    sizes = dict(facts.actor_sizes)
+    key_of = {name: LAST_ID - number for number, name in enumerate(dict.fromkeys(thing.name for thing in standing))}
     t_s, slack_s = history.frames["t_s"], facts.step_s / 2.0
     rows = [history.others]
-    for thing in played.things:
+    for thing in standing:
         key = key_of[thing.name]
         names[key], sizes[key] = thing.name, (thing.half_length_m, thing.half_width_m)
         away_m = np.hypot(history.frames["x_m"] - thing.x_m, history.frames["y_m"] - thing.y_m)

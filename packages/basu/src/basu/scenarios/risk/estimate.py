@@ -14,8 +14,9 @@ stand for. Each case ends in one way:
 An interval has draws of everything uncertain. These are the conflicts (behind a reported crash, or counted), the injury
 curves, and the part of the unknown cases that are crashes (0 to 1, one for the whole agent). The probability of an end
 is that of Clopper and Pearson at the effective number of cases, as in `basu.intervals.weighted`. The ends of the
-interval have draws of the beta distributions of its two ends. Where no case had an impact, the draws suppose impacts
-at the shuttle's highest speed.
+interval have draws of the beta distributions of its two ends. Cases of a campaign's estimate have importance weights,
+and their effective number follows from the variance of the weighted rate (`_Met.trials`). Where no case had an impact,
+the draws suppose impacts at the shuttle's highest speed.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ import numpy as np
 from basu.intervals import Interval
 from basu.metrics.passengers.balance import FREE_MPS2, SPREAD, share_that_falls
 from basu.records.partners import Partner
-from basu.scenarios.nhtsa import PER_1E9_MILES, Group
+from basu.scenarios.nhtsa import TABLE_1_1, Group
 from basu.scenarios.risk.exposure import REPORTED, Exposure, drawn_encounters, encounters, reported_crashes
 from basu.scenarios.risk.injuries import ON_FOOT, Curves, drawn_curves, middle, severe
 from basu.scenarios.shares import scenario_weights
@@ -57,6 +58,8 @@ class PlayedCase(NamedTuple):
     partner: Partner
     impact_mps: float | None = None  # of the ego's fastest collision; None without one
     braking_mps2: float = 0.0  # the hardest that a standing passenger felt
+    weight: float = 1.0  # importance weight of a drive of a campaign's estimate
+    plain: float = 1.0  # share of plain drives in the mixture from which it comes: no weight is above its inverse
 
     @property
     def end(self) -> str:
@@ -97,7 +100,7 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
     counted = counted or {}
     every = list(played)
     known = [case for case in every if case.counted.verdict not in LEFT_OUT]
-    by_group = {group: [case for case in known if case.counted.group is group] for group in PER_1E9_MILES}
+    by_group = {group: [case for case in known if case.counted.group is group] for group in TABLE_1_1}
     measured = {group: cases for group, cases in by_group.items() if cases}
     rng = np.random.default_rng(SEED)
     reported = rng.gamma(REPORTED + 0.5, size=DRAWS)
@@ -123,7 +126,7 @@ def risk(played: Iterable[PlayedCase], counted: Exposure | None = None) -> Risk:
             GroupRisk(group, encounters(group, counted), reported_crashes(group), len(cases), _ends(cases))
             for group, cases in measured.items()
         ),
-        unmeasured=tuple(group for group in PER_1E9_MILES if group not in measured),
+        unmeasured=tuple(group for group in TABLE_1_1 if group not in measured),
         left_out=len(every) - len(known),
     )
 
@@ -136,8 +139,21 @@ class _Met(NamedTuple):
     cases: Sequence[PlayedCase]
 
     def share(self, end: str) -> float:
-        """Return the part of its cases with an end."""
-        return sum(case.end == end for case in self.cases) / len(self.cases)
+        """Return the part of its cases with an end, at most 1; each case counts with its weight."""
+        return min(1.0, sum(case.weight for case in self.cases if case.end == end) / len(self.cases))
+
+    def trials(self, end: str) -> float:
+        """Return the number of cases without weights that would say as much about an end.
+
+        With weights it is p (1 - p) / v, where v is the variance of the estimate (Owen 2013, "Monte Carlo theory,
+        methods and examples", section 9.1). Without a case that ended so, plain drives alone count.
+        """
+        if all(case.weight == case.plain == 1.0 for case in self.cases):
+            return float(len(self.cases))
+        least = sum(case.plain for case in self.cases)
+        terms = np.array([case.weight * (case.end == end) for case in self.cases])
+        share, variance = self.share(end), float(terms.var()) / len(terms)
+        return max(least, share * (1.0 - share) / variance) if variance > 0.0 else least
 
 
 class _Chance(NamedTuple):
@@ -154,7 +170,7 @@ def _rate(met: Sequence[_Met], end: str, rng: np.random.Generator, curves: Curve
     if not conflicts > 0.0:
         return Interval(0.0, 0.0, 0.0, 0)
     total = np.sum([each.drawn for each in met], axis=0)
-    trials = conflicts**2 / sum(each.conflicts**2 / len(each.cases) for each in met)
+    trials = conflicts**2 / sum(each.conflicts**2 / each.trials(end) for each in met)
     share = min(1.0, sum(each.conflicts * each.share(end) for each in met) / conflicts)
     hits = min(trials, trials * share)
     low = rng.beta(hits, trials - hits + 1.0, DRAWS) if hits > 0.0 else np.zeros(DRAWS)
@@ -174,7 +190,7 @@ def _rate(met: Sequence[_Met], end: str, rng: np.random.Generator, curves: Curve
 def _hurt(met: Sequence[_Met], curves: Curves) -> Draws:
     """Return the mean risk (N,) of a severe injury in a crash; in supposed crashes where there was none."""
     hits = [
-        (each.conflicts / len(each.cases), case.impact_mps, case.partner)
+        (case.weight * each.conflicts / len(each.cases), case.impact_mps, case.partner)
         for each in met
         for case in each.cases
         if case.impact_mps is not None
@@ -192,7 +208,7 @@ def _falls(met: Sequence[_Met], chance: _Chance) -> Interval:
     for each in met:
         for case in each.cases:
             fallen = share_that_falls(case.braking_mps2, chance.medians_mps2, chance.spreads)
-            draws = draws + each.drawn / len(each.cases) * fallen
+            draws = draws + case.weight * each.drawn / len(each.cases) * fallen
     low, value, high = (float(end) for end in np.quantile(draws, [0.025, 0.5, 0.975]))
     return Interval(value, low, high)
 

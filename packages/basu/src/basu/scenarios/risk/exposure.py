@@ -22,7 +22,7 @@ else:
     import tomli as tomllib
 
 from basu.errors import ScenarioError
-from basu.scenarios.nhtsa import PER_1E9_MILES, Group
+from basu.scenarios.nhtsa import TABLE_1_1, Group
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,7 +47,7 @@ Exposure = dict[Group, Counted]
 
 def reported_crashes(group: Group) -> float:
     """Return the police-reported crashes of human drivers in a group, for a million miles: table 1.1."""
-    return PER_1E9_MILES[group] / 1000.0
+    return TABLE_1_1[group].per_1e9_miles / 1000.0
 
 
 def encounters(group: Group, counted: Mapping[Group, Counted]) -> float:
@@ -84,7 +84,7 @@ def read_exposure(path: Path) -> Exposure:
 
 def _group(name: str, path: Path) -> Group:
     """Return a group of the table by its name."""
-    known = {group.value: group for group in PER_1E9_MILES}
+    known = {group.value: group for group in TABLE_1_1}
     if name not in known:
         raise ScenarioError(f"{path} has encounters of '{name}'; the groups are {', '.join(known)}")
     return known[name]

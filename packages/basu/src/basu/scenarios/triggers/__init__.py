@@ -12,7 +12,17 @@ from basu.scenarios.triggers.along_route import (
     TimeToRest,
 )
 from basu.scenarios.triggers.motion import ClosesIn, EgoTouches, Elapsed, Faster, Slower, StandsStill, Trigger
-from basu.scenarios.triggers.places import Circle, CrossesLine, EgoNear, InRegion, Near, NearPlace, Polygon, Stretch
+from basu.scenarios.triggers.places import (
+    Circle,
+    CrossesLine,
+    EgoNear,
+    EgoOver,
+    InRegion,
+    Near,
+    NearPlace,
+    Polygon,
+    Stretch,
+)
 
 __all__ = [
     "ActorTimeToArrival",
@@ -24,6 +34,7 @@ __all__ = [
     "EgoEntersJunction",
     "EgoLeavesJunction",
     "EgoNear",
+    "EgoOver",
     "EgoPasses",
     "EgoTouches",
     "Elapsed",

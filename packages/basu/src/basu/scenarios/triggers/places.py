@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.metrics.boxes import touching
 from basu.scenarios.stage import EGO
 from basu.scenarios.triggers.motion import Trigger, named
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from basu.scenarios.paths import Path
     from basu.scenarios.stage import ActorBox, Pose
 
@@ -37,6 +40,25 @@ class EgoNear(Near):
 
     def __init__(self, actor: str, distance_m: float) -> None:
         super().__init__(EGO, actor, distance_m)
+
+
+class EgoOver(Trigger):
+    """The ego is over a thing: their boxes from above overlap."""
+
+    def __init__(self, thing: str) -> None:
+        super().__init__(f"ego is over {thing}")
+        self.thing = thing
+
+    def has_come(self) -> str | None:
+        """Return its speed, once it is."""
+        ego, thing = self.stage.ego, self.stage.body(self.thing)
+        is_over = bool(touching(_box(ego), _box(thing))[0])
+        return f"ego over {self.thing} at {ego.speed_mps:.1f} m/s" if is_over else None
+
+
+def _box(body: ActorBox) -> NDArray[np.float64]:
+    """Return a body's box from above, (1, 5)."""
+    return np.array([[body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m]])
 
 
 class NearPlace(Trigger):

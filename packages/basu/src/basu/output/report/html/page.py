@@ -23,6 +23,7 @@ from basu.output.report.in_words import answers
 from basu.output.report.plots.signals import charts, signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
+from basu.output.report.scenarios.drawing.picture import film_script
 from basu.output.report.scenarios.page.route_section import card_style, on_the_way
 from basu.output.report.shuttles import links
 from basu.output.report.streets import bounds_of
@@ -92,7 +93,10 @@ def report(run: RunRecord) -> bytes:
         "samples": _samples(history, felt),
         "script": script,
     }
-    style = card_style() if result.scenarios or result.case is not None else ""
+    style = ""
+    if result.scenarios or result.case is not None:
+        style = card_style()
+        values["script"] = script = script + film_script()
     return page(title, render("templates/report.j2", **values), script, style)
 
 

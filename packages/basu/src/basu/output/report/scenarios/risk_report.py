@@ -9,7 +9,7 @@ from basu.output.report.documents import RESULT_FILE, write_json
 from basu.output.report.html.page import page
 from basu.output.report.templates import render
 from basu.records.partners import Partner
-from basu.scenarios.nhtsa import PER_1E9_MILES
+from basu.scenarios.nhtsa import TABLE_1_1
 from basu.scenarios.risk.estimate import DRAWS, KINDS, PlayedCase, Risk, risk
 from basu.scenarios.risk.exposure import CONFLICTS, REPORTED, Exposure
 from basu.scenarios.share_documents import results_from
@@ -72,7 +72,7 @@ def risk_text(found: Mapping[str, Risk]) -> list[str]:
     for agent, each in found.items():
         reported = sum(group.reported for group in each.groups)
         lines.append(
-            f"  {agent}: {len(each.groups)} of {len(PER_1E9_MILES)} groups played, in which human drivers have "
+            f"  {agent}: {len(each.groups)} of {len(TABLE_1_1)} groups played, in which human drivers have "
             f"{reported:.2f} reported crashes for a million miles (table 1.1)"
         )
         if each.unmeasured:

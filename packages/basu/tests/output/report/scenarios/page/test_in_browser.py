@@ -1,10 +1,14 @@
 """Claims about matrix.html in a real browser: it makes no request, opens cards, filters, fits on phones and paper."""
 
+import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
+from basu.metrics.boxes import own_boxes
+from basu.output.report.scenarios.drawing.canvas import canvas_for, what_matters
+from basu.output.report.scenarios.drawing.encounter import story_of
 from basu.output.report.scenarios.matrix_documents import CaseRecord
 from basu.output.report.scenarios.page.matrix_page import Cell, matrix_page
 from fakes.scenario_documents import NAMED, case_result, crossing, failed, matrix, told
@@ -122,6 +126,7 @@ def test_it_can_be_read_without_its_script(browser: Browser, file: Path) -> None
     page.locator("details.case summary").first.click()
     assert page.locator("svg.case-picture").first.is_visible()
     assert not page.locator(".filters").is_visible()  # nothing that does nothing
+    assert not page.locator(".film-bar").first.is_visible()
     context.close()
 
 
@@ -131,3 +136,38 @@ def test_on_paper_there_are_matrix_and_opened_cases(page: Page) -> None:
     assert page.locator(".matrix").first.is_visible()
     assert page.locator("details.case:visible").count() == 1
     assert not page.locator(".filters").is_visible()
+
+
+def moved_to(page: Page, seconds: float) -> None:
+    slider = page.locator(f"{CARD} .film-bar input")
+    slider.evaluate("(s, to) => { s.value = to; s.dispatchEvent(new Event('input')); }", seconds)
+
+
+def test_the_slider_of_a_film_moves_the_ego_to_its_place_of_the_record(context: BrowserContext, file: Path) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}{CARD}")
+    assert page.locator(f"{CARD} .moment").is_visible()
+    result, history = failed(), crossing(brakes=False)
+    canvas = canvas_for(what_matters(story_of(result, history)))
+    for seconds in (6.0, 7.0):
+        moved_to(page, seconds)
+        assert not page.locator(f"{CARD} .moment").is_visible()
+        assert page.locator(f"{CARD} .film-bar output").inner_text().startswith(f"{seconds:.1f} s, ego at ")
+        middle = own_boxes(history.facts, history.frames[round(seconds / 0.05)][None])[0]
+        placed = page.locator(f"{CARD} .film .own").get_attribute("transform") or ""
+        x_px, y_px = (float(text) for text in re.findall(r"[-0-9.]+", placed)[:2])
+        assert (x_px, y_px) == pytest.approx(canvas.at(middle[0], middle[1]), abs=0.7)
+
+
+def test_a_film_plays_to_its_end_and_the_still_picture_comes_back(context: BrowserContext, file: Path) -> None:
+    page = context.new_page()
+    page.goto(f"{file.as_uri()}{CARD}")
+    slider = page.locator(f"{CARD} .film-bar input")
+    end_s = float(slider.get_attribute("max") or "nan")
+    moved_to(page, end_s - 0.3)
+    page.locator(f"{CARD} .play").click()
+    expect(page.locator(f"{CARD} .film-bar output")).to_contain_text(f"{end_s:.1f} s, ego at", timeout=20_000)
+    expect(page.locator(f"{CARD} .play")).to_have_text("Play")
+    page.locator(f"{CARD} .still").click()
+    assert page.locator(f"{CARD} .moment").is_visible()
+    assert page.locator(f"{CARD} .film-bar output").inner_text() == ""

@@ -30,6 +30,12 @@ def test_each_that_was_reached_has_a_card_with_its_picture_and_tree() -> None:
     assert "1.20 m to walker at 8.1 s" in page
 
 
+def test_a_card_names_route_weather_and_traffic() -> None:
+    page = page_with(on_way())
+    for text in ("<dt>route</dt><dd>", "<dt>traffic</dt><dd>walker (walker.pedestrian."):
+        assert text in page
+
+
 def test_one_that_was_not_reached_has_its_sentence() -> None:
     page = page_with(
         on_way(verdict=None, reached=False, message="not reached: it waits at 300 m of the route", phases_s={})

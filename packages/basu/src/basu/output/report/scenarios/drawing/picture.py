@@ -9,6 +9,7 @@ from xml.etree.ElementTree import tostring
 
 from basu.output.report.scenarios.drawing.canvas import WIDTH_PX, canvas_for, what_matters
 from basu.output.report.scenarios.drawing.encounter import story_of
+from basu.output.report.scenarios.drawing.film import film
 from basu.output.report.scenarios.drawing.labels import HEIGHT_PX, legend, scale
 from basu.output.report.scenarios.drawing.scene import Scene
 from basu.output.report.scenarios.tally import LOOKS
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 PICTURE_FILE = "picture.svg"
 STYLE_FILE = Path(__file__).parent / "picture.css"
+SCRIPT_FILE = Path(__file__).parent / "film.js"
 HEAD_PX = 26.0  # of the line above a picture that stands by itself
 
 
@@ -32,6 +34,12 @@ HEAD_PX = 26.0  # of the line above a picture that stands by itself
 def picture_style() -> str:
     """The style that a page with such pictures needs."""
     return STYLE_FILE.read_text(encoding="utf-8")
+
+
+@functools.lru_cache
+def film_script() -> str:
+    """Return the script that plays the films of a page."""
+    return SCRIPT_FILE.read_text(encoding="utf-8")
 
 
 def case_picture(result: Mapping[str, Any], history: History, streets: Sequence[Line]) -> str:
@@ -46,15 +54,20 @@ def case_picture(result: Mapping[str, Any], history: History, streets: Sequence[
     return tostring(picture, encoding="unicode") + "\n"
 
 
-def case_drawing(result: Mapping[str, Any], history: History, streets: Sequence[Line], head_px: float = 0.0) -> Element:
-    """The picture as a part of a page that has ``picture_style()``; ``head_px`` are left free above it."""
+def case_drawing(
+    result: Mapping[str, Any], history: History, streets: Sequence[Line], head_px: float = 0.0, *, moves: bool = False
+) -> Element:
+    """The picture as a part of a page that has ``picture_style()``; ``head_px`` are left free above it.
+
+    If ``moves``, the film of the case is in it as well, which `film_script` shows.
+    """
     story = story_of(result, history)
     canvas = canvas_for(what_matters(story))
     scene = Scene(story, canvas)
     height_px = canvas.height_px
     view = " ".join(number(v, 1) for v in (0.0, -head_px, WIDTH_PX, height_px + HEIGHT_PX + head_px))
     inside = e("svg", e("rect", width=WIDTH_PX, height=height_px, class_="paper"), width=WIDTH_PX, height=height_px)
-    extended(inside, [*scene.draw(streets), *scale(canvas)])
+    extended(inside, [*scene.draw(streets), film(story, canvas) if moves else None, *scale(canvas)])
     return e(
         "svg",
         e("title", _title(story)),

@@ -55,8 +55,10 @@ class Scene:
         ground, ways = self._ground(streets), self._ways()
         moment, contacts = self._moment(), self._contacts()
         self._write_times()
-        drawn = [*ground, *ways, *moment, *contacts, *self._labels.drawn]
-        return drawn if larger is None else [*drawn, larger.drawn]
+        times = [each for each in self._labels.drawn if "alarm" not in each.get("class", "")]
+        said = [each for each in self._labels.drawn if "alarm" in each.get("class", "")]
+        still = e("g", *moment, *contacts, *said, None if larger is None else larger.drawn, class_="moment")
+        return [*ground, *ways, *times, still]
 
     def _ground(self, streets: Sequence[Line]) -> list[Element]:
         """Lanes and the ego's plan."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any
 
 from basu.output.report.plots.chart import share, times
 from basu.output.report.scenarios.drawing.picture import case_drawing
 from basu.output.report.scenarios.tally import LOOKS, counted
 from basu.output.report.templates import DASH, percent, render
+from basu.scenarios.characteristics import WEATHER_OF_CASE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -63,7 +65,8 @@ def card(
         anchor=anchor_of(name or case["id"], case["agent"]),
         answers=list(_answers(case.get("assessment") or {})),  # a run made before them has none
         collisions=case.get("collisions") or [],
-        picture=case_drawing(case, history, streets) if is_pictured and history is not None else None,
+        picture=case_drawing(case, history, streets, moves=True) if is_pictured and history is not None else None,
+        situation=_situation(case, history, result),
         phases=phase_line(case),
         judgements=list(_judgements(case["judgements"])),
         command=shlex.join(str(word) for word in case["command"]),
@@ -106,17 +109,40 @@ def _judgements(found: Iterable[dict[str, Any]]) -> Iterable[tuple[dict[str, Any
         yield judgement, sign, style if judgement["deciding"] else "reported"
 
 
+def _situation(case: Mapping[str, Any], history: History | None, result: Result | None) -> list[tuple[str, str]]:
+    """Return the case's route, weather and traffic, as names and texts."""
+    place = [str(case["place"])] if case.get("place") else []
+    if history is not None:
+        route = history.facts.route
+        controls = Counter(control.kind.value.replace("_", " ") for control in route.controls)
+        place += [f"{route.length_m:.0f} m", *(counted(count, kind) for kind, count in controls.items())]
+    known = case.get("characteristics", {})
+    weather = [] if result is None or result.meta["weather"] == WEATHER_OF_CASE else [str(result.meta["weather"])]
+    weather = weather or [known[name] for name in ("atmosphere", "lighting", "surface") if name in known]
+    return [
+        (name, ", ".join(texts))
+        for name, texts in (("route", place), ("weather", weather), ("traffic", _traffic(case, result)))
+        if texts
+    ]
+
+
+def _traffic(case: Mapping[str, Any], result: Result | None) -> list[str]:
+    """Return the scenario's actors and things by their models, and the traffic around them."""
+    roles: dict[str, list[str]] = defaultdict(list)
+    for actor in case["actors"]:
+        roles[actor["type"]].append(actor["role"])
+    found = [f"{', '.join(names)} ({type_})" for type_, names in roles.items()]
+    if result is not None:
+        around = result.meta["traffic"]
+        found += [f"{counted(around[f'{kind}s'], kind)} around" for kind in ("vehicle", "walker") if around[f"{kind}s"]]
+    return found or ["none"]
+
+
 def _of_drive(result: Result | None) -> list[tuple[str, str]]:
-    """The conditions of the drive beside the case, its score, and users' metrics, as names and texts."""
+    """The score of the drive and users' metrics, as names and texts."""
     if result is None:
         return []
-    meta = result.meta
-    others = [
-        counted(meta["traffic"][f"{kind}s"], kind) for kind in ("vehicle", "walker") if meta["traffic"][f"{kind}s"]
-    ]
     return [
-        ("weather", meta["weather"]),
-        *([("traffic", ", ".join(others))] if others else []),
         *([("driving score", f"{result.scores.driving:.3f}")] if result.scores is not None else []),
         *((each.heading, text) for each in result.shown() if (text := each.text(result)) is not None),
     ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report.html.page import page
+from basu.output.report.scenarios.drawing.picture import film_script
 from basu.output.report.scenarios.matrix_documents import read_case
 from basu.output.report.scenarios.page.case_card import KINDS, SIGNS, anchor_of, bare_card, card
 from basu.output.report.scenarios.page.route_section import card_style
@@ -72,7 +73,7 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     cards = _cards(cells, record)
     known = tracks(matrix)
     groups = grouped(matrix["agents"], known)
-    script = (HERE / "matrix.js").read_text(encoding="utf-8")
+    script = (HERE / "matrix.js").read_text(encoding="utf-8") + film_script()
     body = render(
         "templates/matrix.j2",
         what=textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …"),
