@@ -43,7 +43,7 @@ _MOST_LOCAL = 16
 """Bodies of a world that are copied into the local memory of its thread; there is a kernel for each number."""
 
 
-class Tables(NamedTuple):
+class StepInputs(NamedTuple):
     """What a step reads, of all worlds: arrays on the device."""
 
     spec_of: OnDevice
@@ -53,7 +53,7 @@ class Tables(NamedTuple):
     statics: Statics
 
 
-class Findings(NamedTuple):
+class StepResults(NamedTuple):
     """What a step writes besides the states, world by world."""
 
     valid: OnDevice
@@ -78,8 +78,8 @@ def _advance(
     rows: OnDevice,
     work: OnDevice,
     world: int,
-    table: Tables,
-    found: Findings,
+    table: StepInputs,
+    found: StepResults,
     dt_s: float,
     substeps: int,
     gravity: float,
@@ -116,7 +116,7 @@ def _step_kernel(slots: int, built_of: int) -> Any:  # noqa: ANN401 - numba's
 
     @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
     def step(
-        words: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
+        words: OnDevice, table: StepInputs, found: StepResults, dt_s: float, substeps: int, gravity: float
     ) -> None:  # pragma: no cover - compiled
         """Step the world of this thread; ``words`` (W, S * words of a body) are the states."""
         world = cuda.grid(1)
@@ -139,7 +139,7 @@ def _step_kernel_of_many(built_of: int) -> Any:  # noqa: ANN401 - numba's
 
     @cuda.jit(cache=True)  # type: ignore[untyped-decorator] # numba has no hints for it
     def step(
-        state: OnDevice, table: Tables, found: Findings, dt_s: float, substeps: int, gravity: float
+        state: OnDevice, table: StepInputs, found: StepResults, dt_s: float, substeps: int, gravity: float
     ) -> None:  # pragma: no cover - compiled
         """Step the world of this thread; ``state`` (W, S) are the bodies."""
         world = cuda.grid(1)
@@ -219,14 +219,14 @@ class GpuWorlds:
             )
         self.state, self._first = cuda.to_device(table.state), cuda.to_device(_words(first.state))
         self.valid, self.frames = cuda.to_device(valid), cuda.to_device(frames)
-        self._table = Tables(
+        self._table = StepInputs(
             cuda.to_device(table.spec_of),
             cuda.to_device(table.specs),
             cuda.to_device(table.counts),
             self._ground,
             self._statics,
         )
-        self._found = Findings(
+        self._found = StepResults(
             self.valid,
             self.frames,
             cuda.device_array((worlds, slots, 3), np.float64),
