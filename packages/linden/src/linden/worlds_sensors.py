@@ -304,8 +304,8 @@ class WorldsSensors:
     def _placed(self, asked: Asked, part: slice) -> tuple[F64, I32, PartRows, I32, F64]:
         """Return where sensors and bodies of some worlds (K,) are.
 
-        The first two are the poses (K, 6) of the sensors and where the parts of each world begin (K + 1,). Then come the
-        parts of all bodies, the flat rows (A,) of the bodies, and their poses (A, 3, 4).
+        The first two are the poses (K, 6) of the sensors and where the parts of each world begin (K + 1,). The parts of
+        all bodies, the flat rows (A,) of the bodies and their poses (A, 3, 4) follow.
         """
         table, slot, chosen, transform = asked.table, asked.slot, asked.chosen[part], asked.transform[part]
         flat, slots = table.state.reshape(-1), table.state.shape[1]
