@@ -2,8 +2,8 @@
 
     python scripts/outside/autoware_ai/loop.py OUT CONTENTS TOWN.xodr --routes FILE.xml [--ndt] -o FOLDER [OPTIONS]
 
-OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``; OPTIONS go to `basu run`. Writes
-loop.json, loop.jpg and the run folder.
+OUT has the programs of Autoware.AI (``docs/how-to/ros.md``). CONTENTS is the folder of ``linden map package ...
+--ros1``. OPTIONS go to `basu run`. Writes loop.json, loop.jpg and the run folder.
 """
 # ruff: noqa: ANN401 - messages of ROS
 

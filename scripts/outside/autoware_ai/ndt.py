@@ -2,9 +2,9 @@
 
     python scripts/outside/autoware_ai/ndt.py OUT CLOUD.pcd BAG [--leaf M] [--resolution M] [--every N] -o FOLDER
 
-OUT is the folder of ``build``, BAG one that `basu run ... --rosbag` wrote with a lidar. Each scan is published when the
-pose of the one before has come, so no scan is dropped. The first pose is the true one; every other is NDT's own work.
-Writes ndt.json and ndt.jpg.
+OUT has the programs of Autoware.AI (``docs/how-to/ros.md``). BAG is a bag that `basu run ... --rosbag` wrote with a
+lidar. Each scan is published when the pose of the one before has come, so no scan is dropped. The first pose is the
+true one; every other is NDT's own work. Writes ndt.json and ndt.jpg.
 """
 # ruff: noqa: ANN401 - messages of ROS
 

@@ -2,8 +2,9 @@
 
     python scripts/outside/autoware_ai/plan.py OUT CONTENTS TOWN.xodr [--pairs 8] [--route FILE.xml] -o FOLDER
 
-OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``. A plan counts when it begins within
-5 m of the start and ends within 5 m of the goal. Writes plans.json and plan.jpg.
+OUT has the programs of Autoware.AI (``docs/how-to/ros.md``). CONTENTS is the folder of ``linden map package ...
+--ros1``. A plan counts when it begins within 5 m of the start and ends within 5 m of the goal. Writes plans.json and
+plan.jpg.
 """
 # ruff: noqa: ANN401 - messages of ROS
 

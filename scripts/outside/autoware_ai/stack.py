@@ -1,4 +1,4 @@
-"""A roscore of its own, and programs of Autoware.AI that were built by ``build``."""
+"""A roscore of its own, and programs of Autoware.AI 1.13 in a folder (``docs/how-to/ros.md``)."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ class Stack:
     """Starts programs at one roscore, and ends them with the block."""
 
     def __init__(self, stack: ExitStack, out: Path, logs: Path) -> None:
-        """Start the roscore; ``out`` is the folder of ``build``."""
+        """Start the roscore; ``out`` is the folder with the programs of Autoware.AI."""
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
