@@ -14,6 +14,7 @@ from basu.options.run import RunOptions
 from basu.output.report.shuttles import links, read_shuttles
 from basu.records.history.files import read_history
 from basu.results import RunResult, load
+from basu.running import agent_drive
 from servers import RunningServer
 
 VOLATILE = {"wall_s", "started", "first_server_frame"}
@@ -196,6 +197,7 @@ def test_agents_of_shuttles_work_at_the_same_time(drives: Drives, tmp_path: Path
         ({"beside": ("hero=basic",)}, "two shuttles have the role 'hero'"),
         ({"shuttles": 2, "beside": ("basic", "forward")}, "--shuttles 2 and 2 agents with --beside do not fit"),
         ({"shuttles": 2, "series": "nightly"}, "--series counts the result of one vehicle"),
+        ({"watch_shuttle": 2}, "the run has 1 vehicle under test; give a number from 1 to 1"),
     ],
 )
 def test_what_does_not_fit_gets_a_sentence(options: dict[str, Any], sentence: str) -> None:
@@ -212,6 +214,23 @@ def test_the_headway_has_to_fit_on_the_route(drives: Drives, capsys: pytest.Capt
 def test_only_the_first_shuttle_has_a_person(drives: Drives, capsys: pytest.CaptureFixture[str]) -> None:
     drives("basic", "--beside", "human")
     assert "a person drives the first shuttle only" in capsys.readouterr().err
+
+
+def test_a_person_is_shown_the_shuttle_that_the_person_drives(
+    drives: Drives, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drives("human", "--beside", "basic", "--watch-shuttle", 2)
+    assert "leave out --watch-shuttle 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("number", "agent"), [(1, "basic"), (2, "forward")])
+def test_what_shows_a_run_can_show_any_shuttle(
+    drives: Drives, monkeypatch: pytest.MonkeyPatch, number: int, agent: str
+) -> None:
+    shown = []
+    monkeypatch.setattr(agent_drive, "output_managers", lambda _, drive: shown.append(drive) or [])
+    drives("basic", "--beside", "forward", "--watch-shuttle", number, "--stop-after", 0.5)
+    assert [drive.agent for drive in shown] == [agent]
 
 
 def test_each_report_links_to_the_others() -> None:

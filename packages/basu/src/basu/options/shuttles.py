@@ -44,6 +44,15 @@ class ShuttleOptions(Settings):
         100.0, "along the route from one shuttle to the next at the start", is_rare=True, above=0.0
     )
 
+    watch_shuttle: int = option(
+        1,
+        "the vehicle under test that --watch and ROS show, counted from 1",
+        is_rare=True,
+        metavar="N",
+        least=1,
+        most=8,
+    )
+
     @property
     def besides(self) -> tuple[Beside, ...]:
         """The shuttles beside the first one."""
@@ -62,8 +71,15 @@ class ShuttleOptions(Settings):
         """Check that each shuttle has a role and an agent.
 
         Raises:
-            UserError: there are more agents than shuttles, or two shuttles have one role.
+            UserError: there are more agents than shuttles, two shuttles have one role, or there is no such shuttle to
+                watch.
         """
+        count = 1 + len(self.besides)
+        if self.watch_shuttle > count:
+            raise UserError(
+                f"--watch-shuttle {self.watch_shuttle} does not fit: the run has {count} "
+                f"vehicle{'s' if count > 1 else ''} under test; give a number from 1 to {count}"
+            )
         if self.shuttles > 1 and len(self.beside) >= self.shuttles:
             raise UserError(
                 f"--shuttles {self.shuttles} and {len(self.beside)} agents with --beside do not fit: the first shuttle "

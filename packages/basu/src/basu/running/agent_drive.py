@@ -39,6 +39,7 @@ class AgentDrive:
         *,
         name: str,
         quiet: bool,
+        watched: int = 1,
     ) -> None:
         """Describe the drive; the simulator gets no call yet.
 
@@ -47,19 +48,21 @@ class AgentDrive:
             towns: the towns that the simulator has loaded.
             spec: world and task of the drive, and the vehicle of the first shuttle.
             shuttles: the vehicles under test, each with a newly created agent.
-            options: what is recorded and shown, of the first shuttle.
+            options: what is recorded, of the first shuttle, and what is shown, of the one that is ``watched``.
             name: file name of the recorder log on a simulator at ``--host``.
             quiet: True to print no progress and no messages.
+            watched: number of the shuttle that outputs show.
         """
         self._simulator, self._shuttles, self._options, self._quiet = simulator, shuttles, options, quiet
+        self._watched = watched
         self._log_name = name
         self._recording: RecordingManager | None = None
         self.episode = Episode(simulator, spec, towns=towns, drivers=[self._driver(shuttle) for shuttle in shuttles])
 
     def _driver(self, shuttle: Shuttle) -> DriverSetup:
-        """Return what drives and watches one vehicle; outputs show the first."""
-        agents, is_first = shuttle.agents, shuttle is self._shuttles[0]
-        is_watched = is_first and (self._options.shows_sensors or agents.person is not None)
+        """Return what drives and watches one vehicle."""
+        agents, is_first, is_shown = shuttle.agents, shuttle is self._shuttles[0], shuttle.number == self._watched
+        is_watched = is_shown and (self._options.shows_sensors or agents.person is not None)
         operator = shuttle.operator
         return DriverSetup(
             role=shuttle.role,
@@ -77,6 +80,7 @@ class AgentDrive:
             observers=lambda live: (
                 *(() if operator is None else operator.managers(live)),
                 *(self._observers(live) if is_first else ()),
+                *(self._outputs(live, shuttle) if is_shown else ()),
             ),
             interlock=(lambda control: control) if operator is None else operator.interlock,
         )
@@ -104,7 +108,7 @@ class AgentDrive:
         return driven
 
     def _observers(self, live: Live) -> Sequence[BaseManager]:
-        """The progress bar, the recording, and all that shows the drive."""
+        """Return the progress bar and the recording."""
         first = self._shuttles[0]
         live = live._replace(agents=first.agents)
         found: list[BaseManager] = [] if self._quiet else [ProgressBar(live)]
@@ -113,5 +117,10 @@ class AgentDrive:
             name = here if self._simulator.own else f"{self._log_name}.log"
             self._recording = RecordingManager(name, lambda: live.sensors.specs)
             found.append(self._recording)
+        return found
+
+    def _outputs(self, live: Live, shuttle: Shuttle) -> Sequence[BaseManager]:
+        """Return all that shows the drive of a shuttle."""
         say = (lambda _: None) if self._quiet else print
-        return [*found, *output_managers(self._options, ShownDrive(live, first.loaded.name, say))]
+        shown = ShownDrive(live._replace(agents=shuttle.agents), shuttle.loaded.name, say)
+        return output_managers(self._options, shown)

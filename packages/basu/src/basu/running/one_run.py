@@ -60,7 +60,16 @@ def run_one(session: Session, shuttles: Sequence[Shuttle], job: RequestedRun, *,
     first = shuttles[0]
     points = first.agents.own_route()
     spec = _spec(session, first.agents, job, points)
-    one = AgentDrive(session.simulator, session.towns, spec, shuttles, session.options, name=name, quiet=session.quiet)
+    one = AgentDrive(
+        session.simulator,
+        session.towns,
+        spec,
+        shuttles,
+        session.options,
+        name=name,
+        quiet=session.quiet,
+        watched=session.options.watch_shuttle,
+    )
     episode = one.episode
     ground = _laid(episode, is_planned_by_agent=points is not None)
     if session.pictures:
@@ -139,7 +148,13 @@ def next_shuttles(session: Session, job: RequestedRun) -> tuple[Shuttle, ...]:
         is_first = planned.number == 1
         routes = session.options.routes if is_first else None
         agents = new_agents(
-            planned.loaded, session.options, job.seed, routes, has_conditions=is_first, shuttle=planned.number
+            planned.loaded,
+            session.options,
+            job.seed,
+            routes,
+            has_conditions=is_first,
+            shuttle=planned.number,
+            is_watched=planned.number == session.options.watch_shuttle,
         )
         agents.config = planned.agents.config
         found.append(planned._replace(agents=agents))

@@ -97,8 +97,20 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
         UserError, AgentError: nothing can be started like this.
     """
     loaded = given or agent_of(options, options.agent)
+    if loaded.is_human and options.watch_shuttle != 1:
+        raise UserError(
+            f"a person drives the first shuttle, so its page has to show that one; leave out --watch-shuttle "
+            f"{options.watch_shuttle}"
+        )
     with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
-        agents = new_agents(loaded, options, options.seed, options.routes, has_conditions=has_conditions)
+        agents = new_agents(
+            loaded,
+            options,
+            options.seed,
+            options.routes,
+            has_conditions=has_conditions,
+            is_watched=options.watch_shuttle == 1,
+        )
         sensors = sensor_set(agents, loaded)
     config = agents.config
     weather_called(config.weather)
@@ -164,7 +176,14 @@ def _besides(options: RunOptions, first: Shuttle, given: FoundAgent | None) -> l
                 f"the shuttle '{each.role}' with --beside AGENT"
             )
         with agents_fault(loaded):
-            agents = new_agents(loaded, options, options.seed, has_conditions=False, shuttle=number)
+            agents = new_agents(
+                loaded,
+                options,
+                options.seed,
+                has_conditions=False,
+                shuttle=number,
+                is_watched=options.watch_shuttle == number,
+            )
             agents.config = beside(first.agents.config, agents.config)
             sensors = sensor_set(agents, loaded)
         start_m = options.headway_m * (number - 1)
@@ -201,18 +220,20 @@ def new_agents(
     *,
     has_conditions: bool = True,
     shuttle: int = 1,
+    is_watched: bool = True,
 ) -> AgentsManager:
     """Return a fresh agent, with everything random in Python begun anew.
 
     ``routes`` is the route file of the command line. Without ``has_conditions`` the wishes of the agent for route,
     vehicle, weather and traffic are ignored.
 
-    ``seed`` is the run's; each ``shuttle`` has one of its own by it.
+    ``seed`` is the run's; each ``shuttle`` has one of its own by it. Only an agent that ``is_watched`` has a page or
+    recorded keys.
     """
     seed = seed_of(seed, shuttle)
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
-    person = person_for(options, by_hand=loaded.is_human) if shuttle == 1 else None
+    person = person_for(options, by_hand=loaded.is_human) if is_watched else None
     agents = AgentsManager(
         loaded,
         step_limit_s=options.step_limit_s,
