@@ -46,10 +46,10 @@ WORKERS = 4
 
 
 class RefusedError(Exception):
-    """A request cannot be served; its status of gRPC and a sentence."""
+    """A request cannot be served; the error carries a status of gRPC and a sentence."""
 
     def __init__(self, status: grpc.StatusCode, sentence: str) -> None:
-        """Keep both."""
+        """Make the error of a call that ends with a status of gRPC and a sentence."""
         super().__init__(sentence)
         self.status = status
 

@@ -251,7 +251,7 @@ class WorldsSensors:
             work(0, count)
 
     def _on_gpu(self, asked: Asked) -> "tuple[GpuSensors, Eyes]":
-        """Return what measures on the GPU, and where the sensors and bodies of the worlds are.
+        """Return the sensors on the GPU, and the poses of sensors and bodies in the worlds.
 
         Raises:
             UserError: a body was not made by `Worlds.spawn`.

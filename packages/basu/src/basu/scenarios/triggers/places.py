@@ -50,7 +50,7 @@ class EgoOver(Trigger):
         self.thing = thing
 
     def has_come(self) -> str | None:
-        """Return its speed, once it is."""
+        """Return a sentence with the ego's speed while the ego is over the thing."""
         ego, thing = self.stage.ego, self.stage.body(self.thing)
         is_over = bool(touching(_box(ego), _box(thing))[0])
         return f"ego over {self.thing} at {ego.speed_mps:.1f} m/s" if is_over else None

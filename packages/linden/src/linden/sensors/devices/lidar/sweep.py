@@ -51,7 +51,7 @@ class Losses(NamedTuple):
 
     @property
     def by_chance(self) -> bool:
-        """Whether any of it depends on the dice."""
+        """Whether points get lost or move by chance."""
         return self.general_rate > 0.0 or self.deviation_m > 0.0 or self.limit > 0.0
 
 
