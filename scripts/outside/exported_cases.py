@@ -1,6 +1,6 @@
 """Export all cases as OpenSCENARIO files, play each in our kinematic mode and in esmini, and write the table of them.
 
-usage: exported_cases.py --esmini PROGRAM [--table FILE.md] [--folder DIR] [--most N] [CASE...]
+usage: exported_cases.py --esmini PROGRAM [--table FILE.md] [--folder DIR] [--most N] [--workers N] [CASE...]
 
 Each case gets a line: how late its motions begin, and how far its entities are from the rehearsal that the file was
 made of, over all entities and steps of 10 ms. The table has a row for each scenario, with its worst figures.
@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import argparse
 import collections
+import itertools
 import math
 import sys
 import tempfile
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -160,11 +162,22 @@ def main() -> int:
     parser.add_argument("--table", type=Path, metavar="FILE.md", help="write the table there")
     parser.add_argument("--folder", type=Path, metavar="DIR", help="keep the files there")
     parser.add_argument("--most", type=int, default=sys.maxsize, metavar="N", help="play N cases of each scenario")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (default: 1)")
     parser.add_argument("cases", nargs="*", default=[ALL], metavar="CASE")
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as temporary:
+    with tempfile.TemporaryDirectory() as temporary, ProcessPoolExecutor(arguments.workers) as pool:
         folder = (arguments.folder or Path(temporary)).resolve()
-        lines = lines_of(arguments.cases, folder, arguments.esmini.resolve(), arguments.most)
+        by_scenario: dict[str, list[str]] = collections.defaultdict(list)
+        for playable in cases_of(arguments.cases):
+            by_scenario[playable.scenario.__name__].append(playable.case.name)
+        parts = pool.map(
+            lines_of,
+            by_scenario.values(),
+            itertools.repeat(folder),
+            itertools.repeat(arguments.esmini.resolve()),
+            itertools.repeat(arguments.most),
+        )
+        lines = [line for part in parts for line in part]
     if arguments.table is not None:
         arguments.table.write_text(table(lines), encoding="utf-8")
     return 0
