@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, Page
 from basu.campaigns import command
 from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.command import run_campaign
-from basu.campaigns.records import folder_of, kept_in
+from basu.campaigns.records import FAILURE, folder_of, kept_in
 from basu.campaigns.report import write_campaign_report
 from basu.files import read_json
 from basu.output.report.documents import RESULT_FILE, write_json
@@ -51,7 +51,8 @@ def page_file(
         write_history(at, crossing(brakes=False))
         write_streets(at, NAMED)
         write_json(at / RESULT_FILE, {**failed(), "schema_version": 2})
-    told = folder_of(folder, kept[1]) / "drive.json"
+    worst = min(kept[1:], key=lambda each: (each.reason != FAILURE, -each.severity, each.number))
+    told = folder_of(folder, worst) / "drive.json"
     document = read_json(told, "the document")
     write_json(told, {**document, "row": {**document["row"], "message": LONG}})
     return write_campaign_report(folder)

@@ -84,7 +84,7 @@ def test_weather_traffic_and_metrics_of_a_case_are_in_its_world_its_result_and_i
     assert result["passed"] is True
     page = (tmp_path / "latest" / "matrix.html").read_text(encoding="utf-8")
     assert "HardRainNoon" in page
-    assert "2 vehicles, 1 walker" in page
+    assert "2 vehicles around, 1 walker around" in page
     assert "top speed" in page
     (case,) = ScenarioResults(tmp_path / "latest").cases
     assert case.run.metrics["top_speed"] == result["metrics"]["top_speed"]["value"]
