@@ -119,6 +119,7 @@ def lines_of(words: Sequence[str], folder: Path, program: Path, most: int) -> li
     opendrive = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
     town = carla.Map("Linden", opendrive)
     lanes = lane_graph.build(town)
+    folder.mkdir(parents=True, exist_ok=True)
     found: list[Line] = []
     for playable in cases_of(words):
         case, kind = playable.case.name, playable.scenario.__name__
@@ -160,7 +161,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--esmini", type=Path, required=True, help="the program, built without graphics")
     parser.add_argument("--table", type=Path, metavar="FILE.md", help="write the table there")
-    parser.add_argument("--folder", type=Path, metavar="DIR", help="keep the files there")
+    parser.add_argument(
+        "--folder", type=Path, metavar="DIR", help="keep the files there, in a folder for each scenario"
+    )
     parser.add_argument("--most", type=int, default=sys.maxsize, metavar="N", help="play N cases of each scenario")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (default: 1)")
     parser.add_argument("cases", nargs="*", default=[ALL], metavar="CASE")
@@ -173,7 +176,7 @@ def main() -> int:
         parts = pool.map(
             lines_of,
             by_scenario.values(),
-            itertools.repeat(folder),
+            (folder / name for name in by_scenario),  # processes must not write one road file at once
             itertools.repeat(arguments.esmini.resolve()),
             itertools.repeat(arguments.most),
         )

@@ -102,6 +102,8 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("beside", None)
     elif len(given.get("beside", ())) >= given.get("shuttles", 1):
         given.pop("shuttles", None)
+    if given.get("watch_shuttle", 1) > max(given.get("shuttles", 1), 1 + len(given.get("beside", ()))):
+        given.pop("watch_shuttle")  # there are not so many
     for name in refused_by_sumo(given):
         given.pop(name, None)
     if given.get("open") or given.get("track") not in (None, "sensors"):
