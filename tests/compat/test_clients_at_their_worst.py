@@ -9,9 +9,9 @@ import carla
 import psutil
 import pytest
 
-from fakes.client_programs import LISTENING, TRAFFIC, client_program, numbers
+from fakes.client_programs import LATE, LISTENING, TRAFFIC, client_program, numbers
 from fakes.raw_client import RawClient, RawSubscriber
-from servers import RunningServer
+from servers import END_LIMIT_S, RunningServer, running_server
 
 
 @pytest.fixture
@@ -47,6 +47,18 @@ def test_the_port_of_a_killed_traffic_manager_is_free_again(server: RunningServe
     while raw.call("is_traffic_manager_running", port):
         pass
     assert raw.call("tick_cue") > 0
+
+
+def test_a_server_that_ends_takes_no_client_along_that_has_yet_to_read_the_lamps() -> None:
+    """Without an answer to that call LibCarla would end the client's process by ``std::terminate``."""
+    with running_server("--sync") as own, client_program(own.port, LATE) as program, RawClient(own.port) as ticking:
+        numbers(program, 1)
+        ticking.call("tick_cue")
+        numbers(program, 1)
+        ticking.call("tick_cue")
+        own.process.terminate()
+        assert own.process.wait(END_LIMIT_S) == 0
+        assert program.wait(END_LIMIT_S) == 0
 
 
 def least_growth_mib(server: RunningServer, act: Callable[[], None], times: int) -> float:

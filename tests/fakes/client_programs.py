@@ -46,6 +46,19 @@ print(manager.get_port(), flush=True)
 while True: print(world.tick(), flush=True)
 """
 )
+LATE = """
+import carla, os, sys, time
+client = carla.Client("127.0.0.1", int(sys.argv[1]))
+client.set_timeout(1.0)
+world = client.get_world()
+def late(snapshot):
+    os.write(1, b"1\\n")
+    time.sleep(0.4)
+world.on_tick(late)
+os.write(1, b"0\\n")
+time.sleep(3.0)
+"""
+"""It ticks nothing, and its thread takes 0.4 s for each snapshot. A call without an answer fails after 1 s."""
 
 
 @contextmanager

@@ -14,7 +14,7 @@ EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 
 
 class FakeEpisode:
-    """Stands for its own surroundings, which have no layers, and its own map; nobody is in it."""
+    """Stands for its own surroundings, which have no layers and no lamps, and for its own map; it is empty."""
 
     map = None
     actors: Mapping[int, object] = MappingProxyType({})
@@ -22,6 +22,9 @@ class FakeEpisode:
     @property
     def surroundings(self) -> "FakeEpisode":
         return self
+
+    def lamp_states(self) -> tuple[()]:
+        return ()
 
     def unload_layers(self, layers: int) -> None:
         assert layers == 0
@@ -53,6 +56,7 @@ class FakeSimulation:
     episode: FakeEpisode = field(default_factory=FakeEpisode)
     sensor_scene: FakeSensorScene = field(default_factory=FakeSensorScene)
     sensors: EpisodeSensors = field(default_factory=EpisodeSensors)
+    tells_to_read_lamps: bool = False
 
     def step(self, dt_s: float) -> None:
         self.frame += 1

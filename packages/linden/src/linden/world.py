@@ -110,6 +110,11 @@ class World:
         """Whether the snapshot of this frame tells that the map is new."""
         return self.frame - self.episode.first_frame < _FRAMES_THAT_TELL_OF_A_NEW_MAP
 
+    @property
+    def tells_to_read_lamps(self) -> bool:
+        """Whether the snapshot of this frame lets clients read all lamps: they have changed, or the map is new."""
+        return self.map_changed or self.episode.surroundings.lamps.pending
+
     def step(self, dt_s: float) -> None:
         """Make the next frame, ``dt_s`` after the last."""
         self.frame += 1

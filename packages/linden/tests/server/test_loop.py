@@ -6,6 +6,7 @@ import re
 import socket
 import struct
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,15 +16,19 @@ import pytest
 
 from fakes.raw_client import RawClient, RawSubscriber
 from fakes.simulation import FakeFrames, FakeMaps, FakeSimulation
+from linden.cli.process import GRACE_S
 from linden.errors import Refusal
 from linden.protocol.values.episode import EpisodeSettings
 from linden.server import loop, subscribers
 from linden.server import stall_log as waiting
 from linden.server.calls import CALLS_PER_TURN
+from linden.server.lamp_readers import READING_S
 from linden.server.loop import Server
 from linden.server.peers import StreamPeer
 from linden.server.ports import open_ports, port_of
 from linden.server.rpc import registry
+
+registry.load_handlers()  # as a server's start does
 
 SYNCHRONOUS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 RESET_ALL_LAYERS = (True, 0xFFFF)
@@ -528,3 +533,70 @@ def test_stopping_twice_or_too_late_is_no_error() -> None:
         running.server.stop()
         running.thread.join(10)
         running.server.stop()
+
+
+def stops_after_s(running: Live) -> float:
+    """Stop a server and return how long its thread takes to end."""
+    began_s = time.monotonic()
+    running.server.stop()
+    running.thread.join(10)
+    return time.monotonic() - began_s
+
+
+def test_a_server_that_stops_answers_each_client_that_was_told_to_read_the_lamps() -> None:
+    with live() as running, running.client() as ticking, running.client() as first, running.client() as second:
+        subscribers = [running.subscriber(), running.subscriber()]
+        for subscriber in subscribers:
+            subscriber.message()
+        running.simulation.tells_to_read_lamps = True
+        ticking.call("tick_cue")
+        running.server.stop()
+        for subscriber in subscribers:
+            subscriber.message()
+        assert first.call("version") == second.call("version")
+        assert isinstance(first.call("query_lights_state", ""), list)
+        running.thread.join(0.05)
+        assert running.thread.is_alive()
+        assert isinstance(second.call("query_lights_state", ""), list)
+        running.thread.join(0.5 * READING_S)
+        assert not running.thread.is_alive()
+
+
+def test_a_server_that_stops_waits_for_clients_that_read_no_lamps_for_a_limited_time() -> None:
+    with live() as running, running.client() as client:
+        subscriber = running.subscriber()
+        subscriber.message()
+        running.simulation.tells_to_read_lamps = True
+        client.call("tick_cue")
+        assert 0.5 * READING_S < stops_after_s(running) < GRACE_S
+
+
+def test_a_server_that_stops_makes_no_frames_of_its_own_meanwhile() -> None:
+    with live(SYNCHRONOUS._replace(synchronous_mode=False)) as running:
+        running.simulation.tells_to_read_lamps = True
+        subscriber = running.subscriber()
+        subscriber.message()
+        running.server.stop()
+        running.simulation.tells_to_read_lamps = False
+        time.sleep(0.1)
+        frame = running.simulation.frame
+        time.sleep(0.3)
+        assert running.thread.is_alive()
+        assert running.simulation.frame == frame
+
+
+def test_a_server_stops_at_once_if_no_snapshot_told_to_read_the_lamps() -> None:
+    with live() as running, running.client() as client:
+        subscriber = running.subscriber()
+        subscriber.message()
+        client.call("tick_cue")
+        assert stops_after_s(running) < 0.5 * READING_S
+
+
+def test_a_server_stops_at_once_if_the_clients_that_were_told_to_read_the_lamps_have_left() -> None:
+    with live() as running:
+        running.simulation.tells_to_read_lamps = True
+        subscriber = running.subscriber()
+        subscriber.message()
+        subscriber.socket.close()
+        assert stops_after_s(running) < 0.5 * READING_S

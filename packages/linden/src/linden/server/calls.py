@@ -13,8 +13,9 @@ from linden.protocol.wire.rpc import Call
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID
 from linden.server.answer_order import CALLS_PER_TURN, AnswerOrder
 from linden.server.cue import QUESTION, Cue
+from linden.server.lamp_readers import READS_LAMPS, LampReaders
 from linden.server.load_answers import LOAD, AnsweredLoad
-from linden.server.peers import RpcPeer
+from linden.server.peers import RpcPeer, StreamPeer
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import SuspendedCall
@@ -61,6 +62,7 @@ class Calls:
         self._close = close
         self.order = AnswerOrder(context, subscribers, clock)
         self.load = AnsweredLoad(context)
+        self._lamp_readers = LampReaders()
         self.unfinished: dict[RpcPeer, None] = {}
         self.last_ticker: RpcPeer | None = None
         self.joined_s = -math.inf
@@ -162,6 +164,8 @@ class Calls:
         if call.method == LOAD:
             time.sleep(max(0.0, self.joined_s + JOINING_S - self._clock()))
             self.load.answered()
+        if call.method == READS_LAMPS:
+            self._lamp_readers.has_read()
         if call.method == ABOUT_TO_LISTEN and call.args and self._is_stream(call.args[0]):
             self.order.expected.asked(call.args[0], peer.number, self._clock())
 
@@ -170,6 +174,11 @@ class Calls:
         if type(stream_id) is not int:
             return False
         return stream_id == WORLD_OBSERVER_ID or self._context.world.has_stream(stream_id)
+
+    def end_wait_s(self) -> float:
+        """Return how long the end of the server waits at most for clients that are about to read the lamps."""
+        is_heard = self._subscribers.count(WORLD_OBSERVER_ID)
+        return self._lamp_readers.wait_s(self._clock()) if is_heard else 0.0
 
     def send_overdue(self) -> None:
         """Send the answers to destructions that no Traffic Manager has confirmed in time."""
@@ -192,5 +201,15 @@ class Calls:
         now_s = self._clock()
         may_drop = not self.order.is_synchronous()
         for stream_id, payload in self._context.outbox:
+            if stream_id == WORLD_OBSERVER_ID and self._context.world.tells_to_read_lamps:
+                self._lamp_readers.told(self._subscribers.count(stream_id), now_s)
             self._subscribers.publish(stream_id, payload, now_s, may_drop=may_drop)
         self._context.outbox.clear()
+
+    def send_snapshot(self, peer: StreamPeer) -> None:
+        """Send the present snapshot to a client that has just subscribed, also between two ticks."""
+        now_s, world = self._clock(), self._context.world
+        if world.tells_to_read_lamps:
+            self._lamp_readers.told(1, now_s)
+        payload = self._context.frames.world_payload(world)
+        self._subscribers.send(peer, payload, now_s, may_drop=not self.order.is_synchronous())

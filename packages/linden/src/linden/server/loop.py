@@ -93,10 +93,13 @@ class Server:
     # -- life ----------------------------------------------------------------------------------------------------
 
     def run(self) -> None:
-        """Serve until :meth:`stop`, then close every connection."""
+        """Serve until :meth:`stop`, then close every connection.
+
+        Clients that a snapshot has told to read the lamps are answered first; see ``lamp_readers``.
+        """
         sys.setswitchinterval(SWITCH_S)
         try:
-            while not self._stopping:
+            while not self._stopping or self._calls.end_wait_s():
                 self._turn_in_any_memory()
         finally:
             for key in list(self._selector.get_map().values()):
@@ -197,7 +200,7 @@ class Server:
         if unfinished and any(not order.must_wait(peer) for peer in unfinished):
             return 0.0
         now_s = self._clock()
-        waits = [order.held_s(now_s)]
+        waits = [order.held_s(now_s), self._calls.end_wait_s() if self._stopping else None]
         if unfinished:
             waits.append(order.frame_wait_s(now_s))
         if self._has_looked:
@@ -205,7 +208,7 @@ class Server:
         else:  # it will look then, and find out how long there is nothing else to do
             waits.append(self._next_look_s - now_s)
         settings = self.context.world.settings
-        if not settings.synchronous_mode:
+        if not (settings.synchronous_mode or self._stopping):
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
             waits.append(None if pace_s == math.inf else pace_s or order.traffic_wait_s(now_s))
         wait_s = min((wait_s for wait_s in waits if wait_s is not None), default=None)
@@ -300,9 +303,8 @@ class Server:
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
             self._calls.order.expected.came(peer.subscription.stream_id)
-            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
-                payload = self.context.frames.world_payload(self.context.world)
-                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.order.is_synchronous())
+            if peer.subscription.stream_id == WORLD_OBSERVER_ID:
+                self._calls.send_snapshot(peer)
 
     # -- calls and frames ----------------------------------------------------------------------------------------
 
@@ -338,7 +340,7 @@ class Server:
     def _make_due_frame(self) -> None:
         """Make a frame by the clock, or because something new is to be shown; in asynchronous mode only."""
         settings = self.context.world.settings
-        if settings.synchronous_mode:
+        if settings.synchronous_mode or self._stopping:
             self.context.frame_is_due = False
             return
         now_s = self._clock()

@@ -60,6 +60,10 @@ class Subscribers:
         if peer.dropped:
             log.info("%s has missed %d messages in all", peer, peer.dropped)
 
+    def count(self, stream_id: int) -> int:
+        """Return how many peers listen to a stream."""
+        return len(self._by_stream.get(stream_id, ()))
+
     def publish(self, stream_id: int, payload: bytes, now_s: float, *, may_drop: bool) -> None:
         """Send one message to all subscribers of a stream; broken connections are closed."""
         for peer in tuple(self._by_stream.get(stream_id, ())):
