@@ -10,7 +10,7 @@ STRAIGHT_AHEAD = Controls(0.5, 0.0, 0.0)
 
 
 def steered(scenario: Scenario, seed: int = 0, speed_mps: float = 6.0) -> list[tuple[float, float]]:
-    """Return where on the route (m) the ego was in each frame, and its wheel (-1 to 1) while it meant to go straight."""
+    """Return where on the route (m) the ego was in each frame, and its wheel (-1 to 1) while it wanted no turn."""
     stage = OfflineStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
     tree = compose(scenario)
     set_on(tree, stage)
