@@ -5,7 +5,6 @@ Each table stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; 
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import inspect
 import re
@@ -14,6 +13,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import griffe
+from generated_page import replaced, write_or_check
 
 from basu.agents.autonomous_agent import AgentConfig, AutonomousAgent
 from basu.agents.sight import Other
@@ -25,33 +25,12 @@ FOR_THE_AGENT = ("visible_actors", "send")
 INTERNAL = ("bind", "bind_sensors")
 
 
-def main() -> int:
-    """Write the page, or check that it is up to date."""
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
-    before = PAGE.read_text("utf-8")
-    after = before
-    for name, table in TABLES.items():
-        after = replaced(after, name, table())
-    if not arguments.parse_args().check:
-        PAGE.write_text(after, "utf-8")
-    elif after != before:
-        print(f"{PAGE.name} is out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
-        return 1
-    return 0
-
-
-def replaced(page: str, name: str, text: str) -> str:
-    """Return the page with ``text`` between the marks of ``name``."""
-    found, number = re.subn(
-        f"(<!-- {re.escape(name)} -->\n).*?(<!-- /{re.escape(name)} -->)",
-        lambda match: f"{match[1]}\n{text}\n\n{match[2]}",
-        page,
-        flags=re.DOTALL,
-    )
-    if number != 1:
-        raise SystemExit(f"{PAGE} has {number} places for '{name}'; it must have one")
-    return found
+def files() -> dict[Path, str]:
+    """Return the page with its tables."""
+    text = PAGE.read_text("utf-8")
+    for name, make in TABLES.items():
+        text = replaced(text, name, make())
+    return {PAGE: text}
 
 
 def attributes() -> str:
@@ -187,4 +166,4 @@ TABLES: dict[str, Callable[[], str]] = {
 }
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, files))

@@ -9,6 +9,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from generated_page import write_or_check
+
 import basu.cli
 import linden.cli
 from basu import plugins
@@ -19,19 +21,6 @@ HEAD = """# Command line
 Generated from the programs' own parsers by `scripts/make_command_line_page.py`. `PROGRAM COMMAND --help` prints the
 same. [Runs and options](../how-to/runs.md) explains the options of `basu run` in context.
 """
-
-
-def main() -> int:
-    """Write the page, or check that it is up to date."""
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
-    text = page()
-    if not arguments.parse_args().check:
-        PAGE.write_text(text, "utf-8")
-    elif not PAGE.exists() or PAGE.read_text("utf-8") != text:
-        print(f"{PAGE.name} is out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
-        return 1
-    return 0
 
 
 def page() -> str:
@@ -116,4 +105,4 @@ def sentence(text: str) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, lambda: {PAGE: page()}))

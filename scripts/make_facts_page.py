@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections import Counter
 from pathlib import Path
 from typing import Any, NamedTuple
+
+from generated_page import write_or_check
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "reference" / "linden-facts.md"
@@ -138,20 +139,5 @@ def _row(title: str, found: Counter[str]) -> str:
     return f"| {title} | {number} | {' | '.join(shares)} |"
 
 
-def main() -> int:
-    """Write the page, or say whether it is up to date."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing; fail where the page is out of date")
-    arguments = parser.parse_args()
-    text = page(json.loads(FACTS.read_text(encoding="utf-8")))
-    if not arguments.check:
-        PAGE.write_text(text, encoding="utf-8")
-        return 0
-    if not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text:
-        print(f"{PAGE} is out of date; run scripts/make_facts_page.py")
-        return 1
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, lambda: {PAGE: page(json.loads(FACTS.read_text(encoding="utf-8")))}))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree.ElementTree import tostring
 
 import numpy as np
+from generated_page import write_or_check
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
@@ -156,21 +156,11 @@ def _scale(canvas: Canvas) -> Iterator[Element]:
     yield e("text", "5 m", x=10, y=y_px - 5.0, fill="#333")
 
 
-def main() -> int:
-    """Write page and pictures, or check that they are up to date."""
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--check", action="store_true", help="write nothing; fail if a file is not up to date")
+def files() -> dict[Path, str]:
+    """Return the page and its pictures."""
     found = encounters()
-    texts = {PAGE: page(found), **{picture_file(index): picture(one) for index, one in enumerate(found, 1)}}
-    if not arguments.parse_args().check:
-        for file, text in texts.items():
-            file.write_text(text, "utf-8")
-        return 0
-    stale = [file.name for file, text in texts.items() if not file.is_file() or file.read_text("utf-8") != text]
-    if stale:
-        print(f"{', '.join(stale)}: out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
-    return 1 if stale else 0
+    return {PAGE: page(found), **{picture_file(index): picture(one) for index, one in enumerate(found, 1)}}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, files))

@@ -5,10 +5,10 @@ Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; the re
 
 from __future__ import annotations
 
-import argparse
-import re
 import sys
 from pathlib import Path
+
+from generated_page import replaced, write_or_check
 
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
@@ -24,34 +24,12 @@ MODELS = {
 }
 
 
-def main() -> int:
-    """Write the page, or say that it is not what the code says."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
-    check = parser.parse_args().check
-    before = PAGE.read_text("utf-8")
-    after = before
+def files() -> dict[Path, str]:
+    """Return the page with its tables."""
+    text = PAGE.read_text("utf-8")
     for name, model in MODELS.items():
-        after = replaced(after, name, table(model))
-    if not check:
-        PAGE.write_text(after, "utf-8")
-    elif after != before:
-        print("docs/how-to/runs.md is out of date; run `python scripts/make_options_tables.py`", file=sys.stderr)
-        return 1
-    return 0
-
-
-def replaced(page: str, name: str, text: str) -> str:
-    """Return the page with ``text`` between the marks of ``name``."""
-    found, number = re.subn(
-        f"(<!-- {re.escape(name)} -->\n).*?(<!-- /{re.escape(name)} -->)",
-        lambda match: f"{match[1]}\n{text}\n\n{match[2]}",
-        page,
-        flags=re.DOTALL,
-    )
-    if number != 1:
-        raise SystemExit(f"{PAGE} has {number} places for '{name}'; it must have one")
-    return found
+        text = replaced(text, name, table(model))
+    return {PAGE: text}
 
 
 def table(model: type) -> str:
@@ -76,4 +54,4 @@ def _usual(field: Field) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, files))

@@ -5,11 +5,11 @@ The text stands in ``rules_page.md.j2``. Its figures are constants by the names 
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from pathlib import Path
 
+from generated_page import write_or_check
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from basu import conditions, intervals, thresholds
@@ -121,17 +121,5 @@ def page() -> str:
     )
 
 
-def main() -> int:
-    """Write the page, or check that it is up to date."""
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
-    if not arguments.parse_args().check:
-        PAGE.write_text(page(), "utf-8")
-    elif not PAGE.is_file() or PAGE.read_text("utf-8") != page():
-        print(f"{PAGE.name} is out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
-        return 1
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__file__, __doc__, lambda: {PAGE: page()}))

@@ -5,13 +5,14 @@ Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; what i
 
 from __future__ import annotations
 
-import argparse
 import inspect
 import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+
+from generated_page import write_or_check
 
 from basu.scenarios import actions, criteria, paths, triggers
 from basu.scenarios.cases import ALL, open_library, snake
@@ -33,23 +34,6 @@ BASES = {
     "reported_always",
     "margins_of",
 }
-
-
-def main() -> int:
-    """Write the page, or say that it is not what the code says."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
-    check = parser.parse_args().check
-    before = PAGE.read_text("utf-8")
-    after = filled(before)
-    if not check:
-        PAGE.write_text(after, "utf-8")
-    elif after != before:
-        print(
-            "docs/reference/scenarios.md is out of date; run `python scripts/make_scenarios_page.py`", file=sys.stderr
-        )
-        return 1
-    return 0
 
 
 def filled(page: str) -> str:
@@ -158,4 +142,4 @@ PARTS: dict[str, Callable[[], str]] = {
 }
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    sys.exit(write_or_check(__file__, __doc__, lambda: {PAGE: filled(PAGE.read_text("utf-8"))}))

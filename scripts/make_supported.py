@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import supported_client as client
+from generated_page import write_or_check
 
 from linden import CARLA_VERSION, __version__
 from linden.blueprints.library import BlueprintLibrary
@@ -117,17 +118,5 @@ def is_refused(blueprint_id: str) -> bool:
     return False
 
 
-def main() -> int:
-    """Write the page, or with --check say whether it is as it should be."""
-    text = page()
-    if "--check" in sys.argv:
-        if PAGE.read_text("utf-8") == text:
-            return 0
-        print("docs/supported.md is not what the code says; run `make docs`", file=sys.stderr)
-        return 1
-    PAGE.write_text(text, "utf-8")
-    return 0
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    sys.exit(write_or_check(__file__, __doc__, lambda: {PAGE: page()}))

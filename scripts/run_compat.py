@@ -25,8 +25,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests"))
+
+import processor_time  # noqa: E402 - of the tests
+
 SILENT_S = 360.0
 """Longer than any test may take by the time-out in pyproject.toml; a process that says nothing for so long is stuck."""
+RESTS_S, RESTS_USED_S = 90.0, 0.5
+"""So is one that says nothing for 90 s and uses less than half a second of processor time in them, with all that it
+started: no test sleeps that long, and the busiest machine gives a test that computes more."""
 LAST_WORDS_S = 15.0
 TRIES = 2
 MEASURED = {**os.environ, "COVERAGE_OF_SERVERS": str(ROOT / "pyproject.toml")}
@@ -164,9 +171,14 @@ def _heard(process: "subprocess.Popen[bytes]", said: list[bytes], silent_s: floa
     assert process.stdout is not None
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)
-        heard_s = time.monotonic()
+        heard_s = worked_s = time.monotonic()
+        used_s = processor_time.used_s(process.pid)
         while time.monotonic() - heard_s < silent_s:
             if not selector.select(1.0):
+                if (now_s := processor_time.used_s(process.pid)) > used_s + RESTS_USED_S:
+                    used_s, worked_s = now_s, time.monotonic()
+                if time.monotonic() - max(heard_s, worked_s) >= RESTS_S:
+                    return False
                 continue
             words = os.read(process.stdout.fileno(), 1 << 16)
             if not words:

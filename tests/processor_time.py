@@ -17,12 +17,12 @@ SHOWN = 30
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
-def used_s() -> float:
-    """Processor time in s of this process, its living descendants, and ended ones that a parent has waited for.
+def used_s(of: int | None = None) -> float:
+    """Processor time in s of a process (this one by default), its living descendants, and ended ones that were awaited.
 
     Linux: fields 14 to 17 of /proc/PID/stat, proc(5). A process that leaves its parent no longer counts.
     """
-    pids, found = [os.getpid()], 0
+    pids, found = [os.getpid() if of is None else of], 0
     while pids:
         pid = pids.pop()
         with suppress(OSError):

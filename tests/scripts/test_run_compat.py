@@ -40,6 +40,18 @@ def test_a_sentence_says_how_a_process_ended(runner: ModuleType, program: str, e
     assert code == (runner.STUCK if expected == "stuck" else int(expected))
 
 
+def test_a_process_that_rests_is_stuck_before_its_time_is_up_and_one_that_computes_is_not(
+    runner: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner, "RESTS_S", 2.0)
+    monkeypatch.setattr(runner, "RESTS_USED_S", 0.01)
+    monkeypatch.setattr(runner, "LAST_WORDS_S", 0.3)
+    resting = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import time; time.sleep(300)'])"
+    computing = "import time; end = time.monotonic() + 6.0\nwhile time.monotonic() < end: pass"
+    assert runner.run([sys.executable, "-c", resting])[0] == runner.STUCK
+    assert runner.run([sys.executable, "-c", computing]) == (0, b"")
+
+
 def test_what_a_process_said_is_kept_in_order(runner: ModuleType) -> None:
     program = "import sys; print('first', flush=True); print('second', file=sys.stderr)"
     assert runner.run([sys.executable, "-c", program]) == (0, b"first\nsecond\n")

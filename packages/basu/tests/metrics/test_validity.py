@@ -1,6 +1,7 @@
 """Claims about validity: drives beside the route, against it, or with a jump lose; passing an obstacle does not."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -144,9 +145,16 @@ def test_a_lane_of_the_same_road_and_direction_is_the_route() -> None:
     history = along(straight_route(), [(0, LEFT_M), (LENGTH_M, LEFT_M)])
     assert not validity(history).valid.any()
     history.frames["lane_id"] = -2
-    assert validity(history).valid.all()
+    assert validity(replace(history)).valid.all()
     history.frames["off_lane_m"] = 0.6
-    assert not validity(history).valid.any()
+    assert not validity(replace(history)).valid.any()
+
+
+def test_a_record_is_checked_once() -> None:
+    history = along(straight_route(), [(0, 0), (LENGTH_M, 0)])
+    assert validity(history) is validity(history)
+    assert validity(replace(history)) is not validity(history)
+    assert len(validity(history.window(0, 10)).checks) == 10
 
 
 def test_setting_back_and_going_on_breaks_no_drive() -> None:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.stretches import stretches
+from basu.records.history.model import once
 from basu.records.structured import StructuredArray
 from basu.thresholds import AT_REST_MPS
 
@@ -282,6 +283,7 @@ class Validity:
         return stretches(~self.valid)
 
 
+@once
 def validity(history: History) -> Validity:
     """Check every frame of a record."""
     follower, frames = Follower(history.facts.route), history.frames

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 
 import pytest
-from py_trees.common import Status
 
 from basu.scenarios.cases import open_library
-from basu.scenarios.scenario import Scenario, compose, set_on
-from basu.scenarios.stage import Controls
-from basu.testing import OfflineStage, rehearse, steady
+from basu.scenarios.scenario import Scenario
+from basu.testing import rehearse, steady
+from fakes.steered_course import steered
 
 Laid = Callable[..., Scenario]
 
@@ -19,24 +18,8 @@ LIBRARY = open_library()
 KINDS = ("ControlLoss", "SlipperyStop", "CrossWind", "BendDeparture")
 
 
-STRAIGHT_AHEAD = Controls(0.5, 0.0, 0.0)
-
-
 def names(*kinds: str) -> list[str]:
     return [case.name for case in LIBRARY.cases if case.type in kinds]
-
-
-def steered(scenario: Scenario, seed: int = 0, speed_mps: float = 6.0) -> list[tuple[float, float]]:
-    """How far along the route the ego was in each frame, and what its wheel was told while it meant straight ahead."""
-    stage = OfflineStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
-    tree = compose(scenario)
-    set_on(tree, stage)
-    told = []
-    while tree.root.root.status != Status.SUCCESS and stage.time_s < scenario.timeout_s:
-        tree.root.tick()
-        told.append((stage.ego_s_m, stage.controls(STRAIGHT_AHEAD).steer))
-        stage.advance()
-    return told
 
 
 @pytest.mark.parametrize("kind", KINDS)

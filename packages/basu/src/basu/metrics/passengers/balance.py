@@ -11,7 +11,6 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import ndtr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,5 +26,7 @@ def share_that_falls(
     """Return the share of persons with a limit below what is felt, (N,) for (N,) medians and spreads."""
     if felt_mps2 <= 0.0:
         return np.zeros(len(medians_mps2))
+    from scipy.special import ndtr  # noqa: PLC0415 - 0.2 s, which most commands do without
+
     shares: NDArray[np.float64] = ndtr((np.log(felt_mps2) - np.log(medians_mps2)) / spreads)
     return shares

@@ -21,6 +21,7 @@ import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes, time_to_touch_s, touching
 from basu.metrics.passengers.felt import GRIP_MPS2
+from basu.records.history.model import once
 from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class Party(NamedTuple):
     detail: str
 
 
+@once
 def near_misses(history: History) -> tuple[Party, ...]:
     """All actors that came within `SEEN_S` of the vehicle in one of the two measures, by id."""
     if len(history.others) == 0:

@@ -6,21 +6,24 @@ runs of one seed leave the same bytes whatever the server's own frame counter sa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+import functools
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from basu.records.structured import StructuredArray
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     import pyarrow as pa
     from numpy.typing import NDArray
 
     from basu.records.history.sumo import SumoRecord
     from basu.routing import Route
+
+Value = TypeVar("Value")
 
 # One row a tick. World quantities in CARLA's frame (x east, y south, z up), angles in rad, yaw clockwise from above.
 FRAME = np.dtype(
@@ -133,7 +136,11 @@ class Facts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class History:
-    """The whole record of a run."""
+    """The whole record of a run; its arrays do not change once it is made.
+
+    Attributes:
+        computed: what functions with the decorator `once` have returned for this record, by the function.
+    """
 
     facts: Facts
     frames: StructuredArray  # (T,) of FRAME, ticks ascending without a gap
@@ -141,6 +148,7 @@ class History:
     collisions: tuple[Collision, ...]  # ticks ascending
     lane_invasions: tuple[LaneInvasion, ...]  # ticks ascending
     sumo: SumoRecord | None = None  # None for a run without SUMO
+    computed: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def to_arrow(self) -> pa.Table:
         """The record as an Arrow table, one row a tick, with the unit of each column in its field's metadata."""
@@ -174,3 +182,16 @@ class History:
         frames = self.frames
         squared: NDArray[np.float64] = np.sum([frames[f"velocity_{axis}_mps"] ** 2 for axis in "xyz"], axis=0)
         return np.sqrt(squared)
+
+
+def once(compute: Callable[[History], Value]) -> Callable[[History], Value]:
+    """Decorate a function of a record alone: it computes once for each record, and metrics share what it returns."""
+
+    @functools.wraps(compute)
+    def kept(history: History) -> Value:
+        if compute not in history.computed:
+            history.computed[compute] = compute(history)
+        found: Value = history.computed[compute]
+        return found
+
+    return kept

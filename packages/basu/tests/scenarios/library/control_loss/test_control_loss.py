@@ -13,6 +13,7 @@ from basu.scenarios.paths import Path
 from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls, Pose
 from basu.testing import OfflineStage, Rehearsal, StageCommand, offline_place, rehearse, steady
+from fakes.steered_course import steered
 
 Laid = Callable[..., Scenario]
 
@@ -25,19 +26,6 @@ STRAIGHT_AHEAD = Controls(0.5, 0.0, 0.0)
 
 def names(*kinds: str) -> list[str]:
     return [case.name for case in LIBRARY.cases if case.type in kinds]
-
-
-def steered(scenario: Scenario, seed: int = 0, speed_mps: float = 6.0) -> list[tuple[float, float]]:
-    """How far along the route the ego was in each frame, and what its wheel was told while it meant straight ahead."""
-    stage = OfflineStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
-    tree = compose(scenario)
-    set_on(tree, stage)
-    told = []
-    while tree.root.root.status != Status.SUCCESS and stage.time_s < scenario.timeout_s:
-        tree.root.tick()
-        told.append((stage.ego_s_m, stage.controls(STRAIGHT_AHEAD).steer))
-        stage.advance()
-    return told
 
 
 def frictions(played: Rehearsal) -> list[tuple[Pose, float, float]]:

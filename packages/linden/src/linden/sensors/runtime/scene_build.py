@@ -40,7 +40,18 @@ def _load_kernels(*, pictures: bool) -> None:
 
 
 def present_of(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:
-    """Return the mesh without the triangles of boxes that are not there."""
+    """Return the mesh without the triangles of boxes that are not there.
+
+    Where less than half of it is left, the vertices of the rest go as well: casters and pictures go through all.
+    """
     thing = mesh.faces["object"]
     stays = np.append(present, [True])[np.where(thing == NO_OBJECT, len(present), thing)]
-    return mesh if stays.all() else Mesh(mesh.vertices_m, mesh.triangles[stays], mesh.faces[stays])
+    if stays.all():
+        return mesh
+    triangles, faces = mesh.triangles[stays], mesh.faces[stays]
+    if 2 * len(triangles) > len(mesh.triangles):
+        return Mesh(mesh.vertices_m, triangles, faces)
+    used = np.zeros(len(mesh.vertices_m), np.bool_)
+    used[triangles] = True
+    row = np.cumsum(used, dtype=mesh.triangles.dtype) - 1
+    return Mesh(mesh.vertices_m[used], row[triangles], faces)

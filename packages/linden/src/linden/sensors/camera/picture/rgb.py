@@ -14,7 +14,7 @@ from linden.sensors.camera.picture.edges import edge_rays, finer, smooth
 from linden.sensors.camera.picture.film import developed
 from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, StandingLamps, groups, lamps_near, standing_lamps
 from linden.sensors.camera.picture.shade import shaded
-from linden.sensors.camera.picture.smooth_normals import Relief, relief
+from linden.sensors.camera.picture.smooth_normals import Relief, joined, relief, without_first
 from linden.sensors.camera.picture.sun_shadows import Sunshine, sunny, within
 from linden.sensors.camera.picture.surface_points import Places
 from linden.sensors.camera.spec import CameraSpec, Film
@@ -41,15 +41,20 @@ _made: list[tuple[Mesh, Sequence[Mesh], Looks]] = []
 
 
 def looks_of(standing: Mesh, bodies: Sequence[Mesh]) -> Looks:
-    """Return the looks of meshes; those of the last ones are kept."""
+    """Return the looks of meshes; those of the last ones are kept, and those of the same bodies taken over."""
     if not _made or _made[0][0] is not standing or _made[0][1] is not bodies:
-        made = Looks(
-            relief((standing, *bodies)),
-            standing_lamps(standing),
-            tuple(groups(mesh, standing=False) for mesh in bodies),
-        )
+        if _made and _made[0][1] is bodies:
+            of_bodies, body_lamps = _of_bodies(*_made[0])
+        else:
+            of_bodies, body_lamps = relief(bodies), tuple(groups(mesh, standing=False) for mesh in bodies)
+        made = Looks(joined([relief([standing]), of_bodies]), standing_lamps(standing), body_lamps)
         _made[:] = [(standing, bodies, made)]
     return _made[0][2]
+
+
+def _of_bodies(standing: Mesh, _: Sequence[Mesh], looks: Looks) -> tuple[Relief, tuple[tuple[LampGroup, ...], ...]]:
+    """Return what looks hold of the bodies, without what stands: objects of a map come and go, the bodies stay."""
+    return without_first(looks.relief, len(standing.triangles)), looks.body_lamps
 
 
 class Light(NamedTuple):

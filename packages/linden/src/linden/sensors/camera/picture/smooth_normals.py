@@ -38,25 +38,42 @@ class Relief(NamedTuple):
 
 def relief(meshes: Sequence[Mesh]) -> Relief:
     """Return which faces of the meshes are rounded."""
-    rows, corners, normals, count = [], [], [], 0
-    for mesh in meshes:
-        curved = np.flatnonzero(~_EVEN[mesh.faces["material"]])
-        triangles = mesh.triangles[curved].astype(np.int64)
-        leaves = mesh.faces["material"][curved] == Material.LEAVES
-        crease = np.where(leaves, _LEAVES_CREASE, _CREASE).astype(np.float32)
-        vertices = np.ascontiguousarray(mesh.vertices_m, np.float32)
-        made = _corner_normals(vertices, triangles, crease)
-        bent = np.flatnonzero(_differ(made))
-        row = np.full(len(mesh.triangles), FLAT, np.int32)
-        row[curved[bent]] = count + np.arange(len(bent))
-        count += len(bent)
-        rows.append(row)
-        corners.append(vertices[triangles[bent]])
-        normals.append(made[bent])
-    return Relief(np.concatenate(rows), _joined(corners), _joined(normals))
+    return joined([_relief_of(mesh) for mesh in meshes])
 
 
-def _joined(parts: list[F32]) -> F32:
+def _relief_of(mesh: Mesh) -> Relief:
+    """Return which faces of one mesh are rounded."""
+    curved = np.flatnonzero(~_EVEN[mesh.faces["material"]])
+    triangles = mesh.triangles[curved].astype(np.int64)
+    leaves = mesh.faces["material"][curved] == Material.LEAVES
+    crease = np.where(leaves, _LEAVES_CREASE, _CREASE).astype(np.float32)
+    vertices = np.ascontiguousarray(mesh.vertices_m, np.float32)
+    made = _corner_normals(vertices, triangles, crease)
+    bent = np.flatnonzero(_differ(made))
+    row = np.full(len(mesh.triangles), FLAT, np.int32)
+    row[curved[bent]] = np.arange(len(bent))
+    return Relief(row, vertices[triangles[bent]], made[bent])
+
+
+def joined(parts: Sequence[Relief]) -> Relief:
+    """Return the rounded faces of some meshes and of others after them."""
+    before = np.cumsum([0, *(len(part.normal) for part in parts)])
+    rows = [np.where(part.row == FLAT, FLAT, part.row + count) for part, count in zip(parts, before[:-1], strict=True)]
+    return Relief(
+        np.concatenate(rows).astype(np.int32),
+        _in_one([part.corner_m for part in parts]),
+        _in_one([part.normal for part in parts]),
+    )
+
+
+def without_first(whole: Relief, faces: int) -> Relief:
+    """Return the rounded faces of all meshes but the first, which has so many ``faces``."""
+    row = whole.row[faces:]
+    rounded = np.count_nonzero(whole.row[:faces] != FLAT)
+    return Relief(np.where(row == FLAT, FLAT, row - rounded), whole.corner_m[rounded:], whole.normal[rounded:])
+
+
+def _in_one(parts: list[F32]) -> F32:
     return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3), np.float32), *parts]), np.float32)
 
 
