@@ -100,9 +100,9 @@ def _cut_off(lanelet_map: LaneletMap, way: shapely.Geometry, kept: set[int]) -> 
     """Return the kept road lanelets beside the way that lead nowhere or come from nowhere once the others are gone."""
     courses = courses_of(lanelet_map)
     graph = graph_of(lanelet_map, courses)
-    beside = way.buffer(_SAME_M)
+    beside = shapely.buffer(way, _SAME_M)
     shapely.prepare(beside)
-    fixed = {nth for nth, one in enumerate(courses) if beside.covers(shapely.LineString(one.middle[:, :2]))}
+    fixed = {nth for nth, one in enumerate(courses) if shapely.covers(beside, shapely.LineString(one.middle[:, :2]))}
     left = {nth for nth, one in enumerate(courses) if one.lanelet in kept}
     pending = sorted(left - fixed)
     while pending:
