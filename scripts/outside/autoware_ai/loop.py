@@ -47,6 +47,7 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--rules", action="store_true", help="with decision_maker, lane_rule and lane_stop")
     parser.add_argument("--obstacles", action="store_true", help="with ray_ground_filter: stop for what the lidar sees")
+    parser.add_argument("--clusters", action="store_true", help="the same, for points that belong to clusters alone")
     parser.add_argument("--speed-kmph", type=float, default=20.0, help="the highest speed of a plan (default: 20)")
     parser.add_argument("--leaf", type=float, default=ndt_settings.LEAF_M, help="of the scan's voxel grid, m")
     parser.add_argument("--round", action="store_true", help="the route ends where it begins")
@@ -61,7 +62,7 @@ def main() -> int:
         stack.adopt(run)
         options = {"contents": args.contents.resolve(), "town": args.opendrive.stem, "ndt": str(args.ndt).lower()}
         options.update(rules=str(args.rules).lower(), round=str(args.round).lower(), speed_kmph=args.speed_kmph)
-        options.update(obstacles=str(args.obstacles).lower())
+        options.update(obstacles=str(args.obstacles).lower(), clusters=str(args.clusters).lower())
         stack.start("roslaunch", "roslaunch", str(LAUNCH), *(f"{name}:={value}" for name, value in options.items()))
         truth, found = listened(run, args.leaf)
     history = read_history(args.output / "latest")
@@ -76,6 +77,11 @@ def main() -> int:
         "cross_track_mean_m": round(float(lateral.mean()), 3),
         "cross_track_max_m": round(float(lateral.max()), 3),
         "scores": result.get("scores"),
+        "stops_kept": f"{sum(sign['stopped'] for sign in result['stop_signs'])} of {len(result['stop_signs'])}",
+        "collisions": result["collisions"],
+        "infractions": [each["kind"] for each in result["infractions"]],
+        "simulated_s": result["meta"]["simulated_s"],
+        "times_real_time": round(result["meta"]["simulated_s"] / result["meta"]["wall_s"], 2),
     }
     errors = ndt_errors(truth, found)
     if errors:

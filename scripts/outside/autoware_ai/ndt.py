@@ -69,6 +69,7 @@ def main() -> int:
     parser.add_argument("cloud", type=Path)
     parser.add_argument("bag", type=Path)
     parser.add_argument("--sensor", default="top", help="ID of the lidar in the bag")
+    parser.add_argument("--ahead", type=float, default=2.0, help="of the lidar ahead of the vehicle's middle, m")
     parser.add_argument("--height", type=float, default=2.9, help="of the lidar above the ground, m")
     parser.add_argument(
         "--leaf", type=float, default=ndt_settings.LEAF_M, help="of the scan's voxel grid, m (default: Autoware.AI's)"
@@ -101,7 +102,7 @@ def main() -> int:
 def started(stack: Stack, args: argparse.Namespace) -> Ros1Node:
     """A node beside NDT matching, which has its settings and the cloud."""
     master = ServerProxy(stack.environment["ROS_MASTER_URI"])
-    values = {"localizer": "velodyne", "tf_x": 0.0, "tf_y": 0.0, "tf_z": args.height}
+    values = {"localizer": "velodyne", "tf_x": args.ahead, "tf_y": 0.0, "tf_z": args.height}
     for name, value in {**values, "tf_roll": 0.0, "tf_pitch": 0.0, "tf_yaw": 0.0}.items():
         master.setParam("/ndt", f"/{name}", value)
     node = Ros1Node("ndt")

@@ -8,6 +8,7 @@ from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
 from linden_maps.aisan.along import part_along, read_positions, way_along
 from linden_maps.aisan.convert import convert
+from linden_maps.aisan.lanes import courses_of, graph_of
 from linden_maps.aisan.reading import complaints, read_folder
 from linden_maps.aisan.tables import COLUMNS
 from linden_maps.lanelet2.convert import convert as lanelets_of
@@ -93,9 +94,26 @@ def test_the_part_along_a_route_of_linden_is_the_lanes_near_it(linden_lanelets, 
     assert 300 < len(rows["lane"]) < 93_000 / 9
     signs = rows["stopline"][:, COLUMNS["stopline"].index("SignID")]
     assert (signs > 0).sum() >= 1
-    kept = {number for number, _ in part.lanelets("road")}
-    for number, lanelet in whole.lanelets("road"):
-        nodes = {node for role in ("left", "right") for node in whole.ways[lanelet.refs(role)[0]].nodes}
-        away_m = min(way.distance(shapely.Point(whole.nodes[node][:2])) for node in nodes)
-        assert number in kept or away_m > 20.0
-        assert number not in kept or away_m < 120.0  # a long side comes near between its nodes
+    for _, lanelet in part.lanelets("road"):
+        nodes = {node for role in ("left", "right") for node in part.ways[lanelet.refs(role)[0]].nodes}
+        away_m = min(way.distance(shapely.Point(part.nodes[node][:2])) for node in nodes)
+        assert away_m < 120.0  # a long side comes near between its nodes
+
+
+def test_no_lane_of_a_part_ends_in_the_open_but_those_of_the_way(linden_lanelets):
+    """op_global_planner of Autoware.AI joins such an end to any lane nearby, and died of one in Linden."""
+    whole = linden_lanelets.lanelet_map
+    way = way_along(whole, np.array([(524.816, 17.225), (562.011, 248.784)]))
+    part = part_along(whole, way, 20.0)
+    courses = courses_of(part)
+    graph = graph_of(part, courses)
+    links = zip(courses, graph.predecessors, graph.successors, strict=True)
+    open_ended = [course for course, before, after in links if not before or not after]
+    assert 1 <= len(open_ended) <= 2  # the first and the last of the way
+    for course in open_ended:
+        assert shapely.covers(shapely.buffer(way, 0.2), shapely.LineString(course.middle[:, :2]))
+
+
+def test_lanes_that_end_in_the_whole_map_too_are_kept(lanelets):
+    part = part_along(lanelets, way_along(lanelets, np.array(ALONG_THE_FIRST)), 1000.0)
+    assert len(courses_of(part)) == len(courses_of(lanelets)) > 2

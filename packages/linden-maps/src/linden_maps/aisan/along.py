@@ -20,6 +20,8 @@ _ON_LANE_M = 2.0
 """A position of a route lies on each lane with its middle this near; across a junction there are several."""
 _FAR_M = 30.0
 """A position with no lane within this distance is not on this map."""
+_SAME_M = 0.2
+"""A lane belongs to the way when its middle lies this near to it throughout."""
 
 
 def read_positions(path: Path) -> F64:
@@ -67,8 +69,9 @@ def way_along(lanelet_map: LaneletMap, positions_m: F64) -> shapely.Geometry:
 def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) -> LaneletMap:
     """Return the map without what is farther from a way than ``within_m``.
 
-    A lanelet is kept as a whole when one of its sides comes near enough. A regulatory element is kept while a kept
-    lanelet refers to it.
+    A lanelet is kept as a whole when one of its sides comes near enough. A road lanelet that loses all its predecessors
+    or all its successors is left out, unless it belongs to the way. Autoware.AI's op_global_planner joins such an end
+    to another lane nearby, and may die of it. A regulatory element is kept while a kept lanelet refers to it.
 
     Raises:
         UserError: no road lanelet is near enough.
@@ -81,6 +84,7 @@ def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) 
     }
     if not any(number in kept for number, _ in lanelet_map.lanelets("road")):
         raise UserError(f"no side of a lane comes within {within_m:g} m of the route; give --within a larger distance")
+    kept -= _cut_off(lanelet_map, way, kept)
     kept |= {ref for number in kept for ref in lanelet_map.relations[number].refs("regulatory_element")}
     relations = {number: _with_members_of(one, kept) for number, one in lanelet_map.relations.items() if number in kept}
     used = {member.ref for one in relations.values() for member in one.members if member.kind == "way"}
@@ -90,6 +94,24 @@ def part_along(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) 
     nodes_used = {node for line in ways.values() for node in line.nodes}
     nodes = {number: one for number, one in lanelet_map.nodes.items() if number in nodes_used}
     return replace(lanelet_map, nodes=nodes, ways=ways, relations=relations)
+
+
+def _cut_off(lanelet_map: LaneletMap, way: shapely.Geometry, kept: set[int]) -> set[int]:
+    """Return the kept road lanelets beside the way that lead nowhere or come from nowhere once the others are gone."""
+    courses = courses_of(lanelet_map)
+    graph = graph_of(lanelet_map, courses)
+    beside = shapely.buffer(way, _SAME_M)
+    shapely.prepare(beside)
+    fixed = {nth for nth, one in enumerate(courses) if shapely.covers(beside, shapely.LineString(one.middle[:, :2]))}
+    left = {nth for nth, one in enumerate(courses) if one.lanelet in kept}
+    pending = sorted(left - fixed)
+    while pending:
+        nth = pending.pop()
+        ends = [links for links in (graph.predecessors[nth], graph.successors[nth]) if links]
+        if nth in left and nth not in fixed and any(left.isdisjoint(links) for links in ends):
+            left.remove(nth)
+            pending += [*graph.predecessors[nth], *graph.successors[nth]]
+    return {one.lanelet for nth, one in enumerate(courses) if one.lanelet in kept and nth not in left}
 
 
 def _near_ways(lanelet_map: LaneletMap, way: shapely.Geometry, within_m: float) -> set[int]:
