@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from basu_openscenario.reading.traffic import TrafficAction
+
 if TYPE_CHECKING:
     from basu_openscenario.reading.entities import Controller
     from basu_openscenario.reading.positions import Position, RouteSpec, TrajectorySpec
@@ -286,5 +288,6 @@ GlobalAction = (
     | ModifyVariableAction
     | TrafficSignalStateAction
     | TrafficSignalControllerAction
+    | TrafficAction
 )
 Action = PrivateAction | GlobalAction

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from basu_openscenario.reading.xml_node import Node
 
 KINDS = {"Vehicle": "vehicle", "Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
+PROGRAMS_OWN = "esminiController"
+"""The property by which files ask for a controller that is built into esmini."""
 UNLIMITED = 1e10
 """A limit that no motion reaches, m/s or m/s²."""
 
@@ -59,6 +61,8 @@ class Entity:
     line: str = ""
     model: str = ""
     """The name that the file gives the body, such as a blueprint of CARLA."""
+    role: str = ""
+    """What a vehicle is used for, such as ``police``."""
     ahead_m: float = 0.0
     """How far the reference point is ahead of the rear axle, by esmini's property `refpoint_x_offset`."""
 
@@ -72,7 +76,7 @@ def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], di
     found: dict[str, Entity] = {}
     block = root.child("Entities")
     for node in block.children("ScenarioObject"):
-        entity = _entity(node, catalogs)
+        entity = read_entity(node, node.text("name"), catalogs)
         if entity.name in found:
             raise node.fault(f"two entities are called '{entity.name}'; name one otherwise")
         found[entity.name] = entity
@@ -89,8 +93,12 @@ def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], di
     return found, selections
 
 
-def _entity(node: Node, catalogs: Catalogs) -> Entity:
-    """Return one ``ScenarioObject``."""
+def read_entity(node: Node, name: str, catalogs: Catalogs) -> Entity:
+    """Return the entity of a ``ScenarioObject`` or a ``ScenarioObjectTemplate``.
+
+    Raises:
+        ScenarioError: it is of a kind that is not supported, or cannot be read.
+    """
     described = resolved(node.only("ObjectController", "MonitorDeclarations"), catalogs)
     if described.tag not in KINDS:
         raise described.fault(f"<{described.tag}> is not supported as an entity; use one of {', '.join(KINDS)}")
@@ -104,7 +112,7 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
     controllers = [read_controller(one, catalogs) for one in holders]
     ahead_m = _ahead_m(described) if kind == "vehicle" else 0.0
     return Entity(
-        node.text("name"),
+        name,
         kind,
         category,
         _box(described, ahead_m),
@@ -113,6 +121,7 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
         tuple(controllers),
         f"{node.path}:{node.element.sourceline}",
         described.text("name", ""),
+        described.text("role", ""),
         ahead_m,
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu_openscenario.roads.network import DRIVING, Network
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from basu_openscenario.roads.network import Entry
     from basu_openscenario.roads.road import Road, RoadPoint
@@ -67,6 +67,8 @@ class Place:
     at_end_of_road: bool = False
     route: Sequence[str] = ()
     """The roads of a route, in their order."""
+    choose: Callable[[list[Entry]], Entry] | None = None
+    """The choice among several ways on where the route names none; None: by the angle."""
 
     def copy(self) -> Place:
         """Return a place of its own with the same values."""
@@ -276,6 +278,8 @@ class Place:
         for entry in entries:
             if entry.road.number in self.route:
                 return entry
+        if self.choose is not None:
+            return self.choose(entries)
         here = self.road.line(edge).h_rad + (0.0 if at_end else math.pi)
 
         def gap(entry: Entry) -> float:
