@@ -96,6 +96,7 @@ class Player:
         if self.board.state is not State.RUNNING:
             return False
         world.time_s += step_s
+        world.traffic.drive(world, step_s)
         for mover in world.movers.values():
             self._drive(mover, step_s)
         for mover in world.movers.values():
@@ -138,13 +139,16 @@ def _pose(mover: Mover) -> Pose:
     return Pose(mover.name, place.x_m, place.y_m, place.z_m, place.h_rad, place.p_rad, place.r_rad, mover.speed_mps)
 
 
-def make_player(scenario: ScenarioFile, *, with_controllers: bool = True, ego: str | None = None) -> Player:
+def make_player(
+    scenario: ScenarioFile, *, with_controllers: bool = True, ego: str | None = None, seed: int = 0
+) -> Player:
     """Return a player of a scenario.
 
     Args:
         scenario: as its file has it.
         with_controllers: whether controllers of other programs are refused; otherwise all entities play as written.
         ego: the entity that an agent drives; its controllers do not count.
+        seed: of the choices of traffic.
 
     Raises:
         ScenarioError: its road network cannot be read, or it asks for what is not supported.
@@ -153,6 +157,7 @@ def make_player(scenario: ScenarioFile, *, with_controllers: bool = True, ego: s
         check_controllers(scenario, ego)
     network = read_network(scenario.road_file) if scenario.road_file is not None else Network(scenario.path)
     world = make_world(scenario, network)
+    world.traffic.seed(seed)
     board, init = build(scenario, world)
     player = Player(scenario, world, board, list(init))
     for element in board.all():

@@ -10,6 +10,7 @@ from basu.errors import ScenarioError
 from basu_openscenario.playing.curves import lay
 from basu_openscenario.playing.mover import Mover
 from basu_openscenario.playing.routes import road_path, route_place
+from basu_openscenario.playing.traffic import Traffic
 from basu_openscenario.reading.positions import (
     LanePosition,
     Orientation,
@@ -47,6 +48,7 @@ class World:
     environment: dict[str, str] = field(default_factory=dict)
     time_s: float = 0.0
     step_s: float = 0.0
+    traffic: Traffic = field(default_factory=Traffic)
     acting: dict[str, list[RunningAction]] = field(default_factory=dict)
     """The actions of each entity that have begun, and perhaps ended."""
 
