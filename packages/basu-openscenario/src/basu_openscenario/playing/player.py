@@ -101,7 +101,8 @@ class Player:
             self._drive(mover, step_s)
         for mover in world.movers.values():
             mover.pull()
-            mover.watch(world.time_s)
+            if mover.name not in world.traffic.drivers:  # no condition names a vehicle of traffic
+                mover.watch(world.time_s)
         for mover in world.movers.values():
             mover.settle(step_s)
         return True

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.scenarios.actions.path_follower import FollowerLimits, following_mps2, gap_ahead
+from basu.scenarios.actions.path_follower import MARGIN_M, FollowerLimits, following_mps2, gap_ahead
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import ActorBox
 
@@ -36,26 +36,32 @@ UNPOSTED_MPS = 50.0 / 3.6
 """The speed on roads without a posted one, for vehicles to which the file gives none."""
 DECIDE_S = 0.1
 """A driver decides so often."""
-REACH_M = 3.5
-"""Boxes whose middle is farther from the way than this, beside their own size, are not compared exactly."""
+BEND_M = 0.5
+"""Boxes so much farther from the way than the vehicle's width are compared exactly, since the way may bend."""
+MOST_COMPARED = 4
+"""So many of the nearest boxes on the way are compared exactly."""
 
 
 class Seen(NamedTuple):
-    """The boxes of all entities in OpenDRIVE's axes, and their middles as (N, 2)."""
+    """The boxes of all entities in OpenDRIVE's axes; N of them."""
 
     names: tuple[str, ...]
     boxes: tuple[ActorBox, ...]
     middles_m: NDArray[np.float64]
-    reach_m: NDArray[np.float64]
-    """(N,) half the diagonals, m."""
+    """(N, 2) of x and y."""
+    halves_m: NDArray[np.float64]
+    """(N, 2) half the length and half the width."""
+    yaw_rad: NDArray[np.float64]
+    """(N,) headings."""
 
 
 def seen(movers: Sequence[Mover]) -> Seen:
     """Return the boxes of entities."""
     boxes = tuple(box_of(one) for one in movers)
     middles = np.array([box[:2] for box in boxes], dtype=np.float64).reshape(-1, 2)
-    reach = np.array([math.hypot(box.half_length_m, box.half_width_m) for box in boxes])
-    return Seen(tuple(one.name for one in movers), boxes, middles, reach)
+    halves = np.array([(box.half_length_m, box.half_width_m) for box in boxes]).reshape(-1, 2)
+    yaw = np.array([box.yaw_rad for box in boxes])
+    return Seen(tuple(one.name for one in movers), boxes, middles, halves, yaw)
 
 
 def box_of(mover: Mover) -> ActorBox:
@@ -164,13 +170,17 @@ class TrafficDriver:
 
     def _near(self, others: Seen, middle_m: float, half_width_m: float) -> list[int]:
         """Return the entities whose middle is ahead of the vehicle's and near its way, the nearest first."""
-        points = self.path.points_m[:, :2]
-        gaps = np.hypot(others.middles_m[:, None, 0] - points[:, 0], others.middles_m[:, None, 1] - points[:, 1])
-        nearest = np.argmin(gaps, axis=1)
-        close = gaps[np.arange(len(gaps)), nearest] <= others.reach_m + half_width_m + REACH_M
-        along_m = self.path.s_m[nearest]
+        points, yaw_rad = self.path.points_m[:, :2], self.path.yaw_rad
+        dx, dy = (others.middles_m[:, axis, None] - points[:, axis] for axis in (0, 1))
+        nearest = np.argmin(dx * dx + dy * dy, axis=1)
+        rows, along_m = np.arange(len(nearest)), self.path.s_m[nearest]
+        cos, sin = np.cos(yaw_rad[nearest]), np.sin(yaw_rad[nearest])
+        left_m = np.abs(dy[rows, nearest] * cos - dx[rows, nearest] * sin)
+        turn_rad = others.yaw_rad - yaw_rad[nearest]
+        half_m = others.halves_m[:, 0] * np.abs(np.sin(turn_rad)) + others.halves_m[:, 1] * np.abs(np.cos(turn_rad))
+        close = left_m <= half_m + half_width_m + MARGIN_M + BEND_M
         found = np.flatnonzero(close & (along_m >= middle_m - POINT_M / 2.0) & (along_m <= middle_m + LOOK_M + KEPT_M))
-        return [int(one) for one in found[np.argsort(along_m[found], kind="stable")]][:6]
+        return [int(one) for one in found[np.argsort(along_m[found], kind="stable")]][:MOST_COMPARED]
 
     def drive(self, step_s: float) -> None:
         """Change the speed for a step; the lane is followed as by every entity."""
