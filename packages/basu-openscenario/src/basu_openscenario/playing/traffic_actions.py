@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -22,13 +23,13 @@ from basu_openscenario.reading import traffic as reading
 from basu_openscenario.roads.place import is_forward
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from basu_openscenario.playing.world import World
     from basu_openscenario.reading.entities import Entity
     from basu_openscenario.reading.traffic import TrafficMix
     from basu_openscenario.roads.place import Place
 
+Finder = Callable[[Callable[["Place"], bool]], "Place | None"]
+"""Returns a place that a function accepts; None where there is none."""
 SOURCE_S, SWARM_S = 0.1, 0.5
 """A source, and a swarm or an area, looks so often for room for further vehicles."""
 POINT_M = 5.0
@@ -50,6 +51,8 @@ class TrafficRunning(RunningAction):
         self.own: dict[str, None] = {}
         """The vehicles that it has brought and that are there, in their order."""
         self._wait_s = 0.0
+        self._waiting: tuple[Entity, float | None] | None = None
+        """The vehicle that appears next, and its speed in m/s; None: it is not drawn yet."""
 
     def prepare(self) -> None:
         """Be known to the actions that end it."""
@@ -80,23 +83,23 @@ class TrafficRunning(RunningAction):
     def manage(self) -> None:
         """Bring or remove vehicles."""
 
-    def bring(
-        self, mix: TrafficMix, given_mps: float | None, find: Callable[[Callable[[Place], bool]], Place | None]
-    ) -> bool:
-        """Bring a vehicle where there is room; return whether there was.
+    def bring(self, mix: TrafficMix, speed: Callable[[], float | None], find: Finder) -> bool:
+        """Bring a vehicle where there is room; return whether there was. A vehicle without room waits for its turn.
 
         Args:
             mix: which vehicles may appear.
-            given_mps: their speed; None: the posted one.
+            speed: draws the speed in m/s; None: the posted one.
             find: returns a place that a function accepts.
         """
         traffic = self.world.traffic
         if traffic.is_full:
             return False
-        entity = traffic.choose_body(mix)
+        self._waiting = self._waiting or (traffic.choose_body(mix), speed())
+        entity, given_mps = self._waiting
         place = find(partial(self._accepts, entity, given_mps))
         if place is None:
             return False
+        self._waiting = None
         self.own[traffic.bring(self.world, entity, place, first_speed_mps(place, given_mps, entity), given_mps)] = None
         return True
 
@@ -134,7 +137,7 @@ class VehicleSource(TrafficRunning):
 
     def manage(self) -> None:
         """Bring the vehicles that are due."""
-        while self.due >= 1.0 - SMALL and self.bring(self.action.mix, self.action.speed_mps, self._find):
+        while self.due >= 1.0 - SMALL and self.bring(self.action.mix, lambda: self.action.speed_mps, self._find):
             self.due -= 1.0
 
     def _find(self, accept: Callable[[Place], bool]) -> Place | None:
@@ -204,12 +207,15 @@ class VehicleSwarm(TrafficRunning):
         x_m, y_m = self._middle()
         self.near = world.network.samples_within(x_m, y_m, max(action.semi_major_m, action.semi_minor_m) + ROADSIDE_M)
         while len(self.own) < action.count:
-            speeds, rng = action.speeds_mps, world.traffic.rng
-            given_mps = None if speeds is None else rng.uniform(*speeds)
             weights = action.directions
-            is_same = None if weights is None else rng.random() * sum(weights) < weights[0]
-            if not self.bring(action.mix, given_mps, partial(self._find, is_same)):
+            is_same = None if weights is None else world.traffic.rng.random() * sum(weights) < weights[0]
+            if not self.bring(action.mix, self._speed, partial(self._find, is_same)):
                 return
+
+    def _speed(self) -> float | None:
+        """Draw the speed of a vehicle in m/s; None: the posted one."""
+        speeds = self.action.speeds_mps
+        return None if speeds is None else self.world.traffic.rng.uniform(*speeds)
 
     def _middle(self) -> tuple[float, float]:
         """Return the middle of the ellipse."""
@@ -265,7 +271,7 @@ class AreaTraffic(TrafficRunning):
             for name in [name for name in self.own if not self._is_inside(world.mover(name).place)]:
                 world.traffic.remove(world, name)
                 del self.own[name]
-        while len(self.own) < self.action.count and self.bring(self.action.mix, None, self._find):
+        while len(self.own) < self.action.count and self.bring(self.action.mix, lambda: None, self._find):
             pass
         self.is_done = not self.action.is_continuous
 
