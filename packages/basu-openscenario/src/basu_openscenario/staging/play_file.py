@@ -107,9 +107,12 @@ class PlayFile(Action):
             self.traffic.remove(name)
         before = frozenset(self.traffic)
         for name in [name for name in world.traffic.drivers if name not in before]:
-            mover = world.mover(name)
+            mover, there = world.mover(name), middle_of(world.mover(name))
+            back_m = mover.speed_mps * stage.step_s  # it is there in the next frame
+            x_m, y_m = there.x_m - back_m * math.cos(there.yaw_rad), there.y_m - back_m * math.sin(there.yaw_rad)
+            pose = there._replace(x_m=x_m, y_m=y_m)
             try:
-                stage.add(ActorSpec(name, blueprint_of(mover.entity), middle_of(mover), speed_mps=mover.speed_mps))
+                stage.add(ActorSpec(name, blueprint_of(mover.entity), pose, speed_mps=mover.speed_mps))
             except ScenarioError:
                 world.traffic.remove(world, name)
             else:

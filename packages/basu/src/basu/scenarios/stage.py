@@ -127,7 +127,7 @@ class Stage(Protocol):
         """Lead it no more: it rolls as its own physics has it."""
 
     def add(self, spec: ActorSpec) -> None:
-        """Bring a further actor into the world; it can be commanded from the next frame on.
+        """Bring a further actor into the world, with its speed; other commands follow from the next frame on.
 
         Raises:
             ScenarioError: its name is taken, or there is no room for it.

@@ -84,13 +84,17 @@ class LiveStage:
     def set_off(self, specs: Sequence[ActorSpec]) -> None:
         """Set off the actors that begin in motion."""
         for spec in specs:
-            if spec.speed_mps:
-                yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
-                if kind == "vehicle":
-                    self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
-                elif kind == "walker":
-                    self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
+            self._set_off(spec)
         self._commands.carry_out()
+
+    def _set_off(self, spec: ActorSpec) -> None:
+        """Command the speed with which an actor begins."""
+        if spec.speed_mps:
+            yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
+            if kind == "vehicle":
+                self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
+            elif kind == "walker":
+                self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
 
     def begin(self, tick: int) -> None:
         """Let the scenario's clock begin."""
@@ -203,10 +207,11 @@ class LiveStage:
         self._commands.let_go(self._member(name))
 
     def add(self, spec: ActorSpec) -> None:
-        """Bring a further actor into the world."""
+        """Bring a further actor into the world, with its speed."""
         if spec.name in self._cast:
             raise ScenarioError(f"{self._case} has two actors called '{spec.name}'; give each its own role")
         self._spawn([spec])
+        self._set_off(spec)
 
     def remove(self, name: str) -> None:
         """Take an actor out of the world."""
