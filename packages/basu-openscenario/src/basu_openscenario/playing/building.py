@@ -31,6 +31,7 @@ from basu_openscenario.playing.longitudinal import DistanceKeeping, SpeedChange
 from basu_openscenario.playing.side_distance import SideDistance
 from basu_openscenario.playing.speed_profile import SpeedProfile
 from basu_openscenario.playing.synchronisation import Synchronisation
+from basu_openscenario.playing.towing import TrailerConnection, TrailerDisconnection
 from basu_openscenario.playing.traffic_actions import TRAFFIC_MAKERS
 from basu_openscenario.playing.triggers import RunningCondition, RunningTrigger
 from basu_openscenario.reading import actions
@@ -64,6 +65,8 @@ MAKERS: dict[type, Callable[..., RunningAction]] = {
     actions.AssignControllerAction: ControllerAssignment,
     actions.ActivateControllerAction: lambda name, world, mover, _: ControllerActivation(name, world, mover),
     actions.LightStateAction: LightChange,
+    actions.ConnectTrailerAction: TrailerConnection,
+    actions.DisconnectTrailerAction: lambda name, world, mover, _: TrailerDisconnection(name, world, mover),
 }
 """What does each private action."""
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu_openscenario.playing.building import build
 from basu_openscenario.playing.controllers import check_controllers
 from basu_openscenario.playing.elements import State
+from basu_openscenario.playing.towing import align, pull_trailers
 from basu_openscenario.playing.transition import SMALL
 from basu_openscenario.playing.world import World, make_world
 from basu_openscenario.roads.network import Network
@@ -87,6 +88,9 @@ class Player:
                 action.start()  # type: ignore[attr-defined]
             self.board.start()
             for mover in world.movers.values():
+                if mover.tow is None:
+                    align(mover)
+            for mover in world.movers.values():
                 mover.remember()
                 mover.teleported = True
         self.board.check_triggers()
@@ -101,6 +105,8 @@ class Player:
             self._drive(mover, step_s)
         for mover in world.movers.values():
             mover.pull()
+        pull_trailers(world.movers.values())
+        for mover in world.movers.values():
             if mover.name not in world.traffic.drivers:  # no condition names a vehicle of traffic
                 mover.watch(world.time_s)
         for mover in world.movers.values():
@@ -111,6 +117,8 @@ class Player:
         """Move an entity along its lane, unless an action has moved it in this step, or an agent drives it."""
         if mover.given is not None:
             mover.follow(mover.given, step_s)
+        if mover.tow is not None:
+            return
         if abs(mover.speed_mps) > SMALL and not mover.moved_along and mover.place.road is not None:
             mover.place.move(mover.speed_mps * step_s)
             mover.moved_along = mover.speed_is_set = True

@@ -206,6 +206,18 @@ class LightStateAction:
     transition_s: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class ConnectTrailerAction:
+    """Let the entity tow a trailer."""
+
+    entity: str
+
+
+@dataclass(frozen=True, slots=True)
+class DisconnectTrailerAction:
+    """Let the entity go on without its trailer."""
+
+
 PrivateAction = (
     SpeedAction
     | SpeedProfileAction
@@ -222,6 +234,8 @@ PrivateAction = (
     | AssignControllerAction
     | ActivateControllerAction
     | LightStateAction
+    | ConnectTrailerAction
+    | DisconnectTrailerAction
 )
 
 

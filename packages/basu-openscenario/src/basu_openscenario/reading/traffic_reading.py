@@ -293,6 +293,8 @@ def _template(node: Node, catalogs: Catalogs) -> Entity:
             f"a {entity.category if entity.kind == 'vehicle' else entity.kind} does not drive by itself; "
             "let the template be a vehicle"
         )
+    if entity.trailer:
+        raise node.fault("vehicles of traffic have no trailers; remove the <Trailer> of the template")
     for controller in entity.controllers:
         _check_controller(node, controller)
     return entity
