@@ -83,16 +83,7 @@ class Player:
         world = self.world
         world.step_s = step_s
         if not self._begun:
-            self._begun = True
-            for action in self.init:
-                action.start()  # type: ignore[attr-defined]
-            self.board.start()
-            for mover in world.movers.values():
-                if mover.tow is None:
-                    align(mover)
-            for mover in world.movers.values():
-                mover.remember()
-                mover.teleported = True
+            self._begin()
         self.board.check_triggers()
         for action in self.init:
             action.step()  # type: ignore[attr-defined]
@@ -100,6 +91,26 @@ class Player:
         if self.board.state is not State.RUNNING:
             return False
         world.time_s += step_s
+        self._move(step_s)
+        return True
+
+    def _begin(self) -> None:
+        """Do the init actions, and start the storyboard."""
+        self._begun = True
+        movers = self.world.movers
+        for mover in movers.values():
+            if mover.tow is None:
+                align(mover)
+        for action in self.init:
+            action.start()  # type: ignore[attr-defined]
+        self.board.start()
+        for mover in movers.values():
+            mover.remember()
+            mover.teleported = True
+
+    def _move(self, step_s: float) -> None:
+        """Move all entities for a step: those that drive, and then the trailers behind them."""
+        world = self.world
         world.traffic.drive(world, step_s)
         for mover in world.movers.values():
             self._drive(mover, step_s)
@@ -109,9 +120,7 @@ class Player:
         for mover in world.movers.values():
             if mover.name not in world.traffic.drivers:  # no condition names a vehicle of traffic
                 mover.watch(world.time_s)
-        for mover in world.movers.values():
             mover.settle(step_s)
-        return True
 
     def _drive(self, mover: Mover, step_s: float) -> None:
         """Move an entity along its lane, unless an action has moved it in this step, or an agent drives it."""
