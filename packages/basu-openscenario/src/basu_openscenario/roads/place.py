@@ -243,13 +243,14 @@ class Place:
         return True
 
     def _lane_at(self, s_m: float) -> int:
-        """Return the lane that the present one becomes at another s of the same road."""
+        """Return the lane that the present one becomes at another s of the same road; if it ends, the nearest one."""
         assert self.road is not None, "it is on a road"
-        if len(self.road.sections) == 1:
-            return self.lane
         held = min(max(s_m, 0.0), self.road.length_m)
-        lane = self.network.lane_through(self.road, self.lane, self.s_m, held)
-        if lane == 0 and self.lane != 0:
+        lane = self.lane
+        if len(self.road.sections) > 1:
+            lane = self.network.lane_through(self.road, self.lane, self.s_m, held)
+        section = self.road.section(held)
+        if self.lane and (not lane or (lane in section.lanes and section.width_m(lane, held) < SMALL)):
             t_m = self.offset_m + self.road.lane_t_m(self.lane, self.s_m)
             lane, _ = self.road.lane_at(held, t_m, self.kinds)
         return lane
