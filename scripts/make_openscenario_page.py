@@ -14,6 +14,8 @@ from basu_openscenario.reading.entities import KINDS
 from basu_openscenario.reading.global_action_reading import GLOBAL_ACTIONS
 from basu_openscenario.reading.position_reading import POSITIONS, SHAPES
 from basu_openscenario.reading.scenario_file import VERSIONS
+from basu_openscenario.reading.traffic import FARTHEST_M, MOST_ACTIONS, MOST_PER_S, MOST_VEHICLES
+from basu_openscenario.reading.traffic_reading import TRAFFIC_ACTIONS
 from basu_openscenario.staging.refusals import REFUSED
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "openscenario.md"
@@ -61,6 +63,37 @@ one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `
 - `expectedValue` and `variance` of a log-normal distribution are its own moments, not those of the logarithm.
 - A file may have up to 10,000 runs. Runs outside the constraints of the scenario are left out, and `basu scenario list`
   says how many.
+
+## Traffic
+
+Sources, sinks, swarms and areas bring vehicles into a file while it plays, and remove them. They are called
+`traffic-1`, `traffic-2` and so on, and are in the record, in contacts and in the film like the entities of the file.
+
+- **They follow their lane**, slow down before bends, and choose at junctions by chance. Each keeps its distance to
+  what is on its way by the intelligent driver model, also to entities of the file and to the agent. They leave at the
+  end of the road. They change no lanes, give no right of way at junctions, and do not obey lights.
+- **Chance** comes from the seed of the drive (`--seed`). The same command gives the same traffic.
+- **A source** brings its first vehicle at once. A vehicle appears where neither it nor another one has to brake
+  harshly; without such a place it waits. With a radius below 5 m, vehicles appear in the lane nearest to the position.
+- **A sink** removes vehicles of traffic alone. With a definition, it removes the categories of that definition.
+- **A swarm** has up to its number of vehicles. They appear between the inner circle and the ellipse about the central
+  object, whose major axis is along its heading. They are removed outside of the ellipse.
+- **An area** is filled once, or is kept full if it is continuous. Vehicles that leave a continuous area are removed.
+- **`TrafficStopAction`** ends the actions of its `trafficName`, or all of them without one. Their vehicles drive on. No
+  other end comes by itself, but the end of the act or the storyboard.
+- **Speeds** are those of the file, otherwise the posted ones, otherwise 50 km/h.
+- **Vehicles** are those of `TrafficDistribution`, or of the categories, roles and controllers of `TrafficDefinition`,
+  by their weights. Without both they are cars. The roles ambulance, fire and police have blueprints. All controllers
+  drive alike; those of esmini are refused.
+- **Bounds**: {vehicles} vehicles at a time in all swarms and areas of a file, and in all of its traffic; {rate:g} vehicles/s
+  for a source or a sink; {far:g} m for radius, axes and offset; {actions} actions. Above them, the file is refused.
+
+## Trailers
+
+The kinematic mode plays trailers: a trailer that is an entity of its own, one that is described inside of its vehicle
+(it is called as the vehicle with a `+` behind), and those that are connected and disconnected. The axle of a trailer
+is pulled towards the hitch and does not slip. In the simulator bodies that overlap would collide, so that a file with
+a towed trailer is refused there.
 
 ## Cases for other players
 
@@ -187,6 +220,8 @@ REMARKS = {
     "ActivateControllerAction": "likewise",
     "LightStateAction": "lights of vehicles are not shown",
     "TrafficSignalStateAction": "a word such as `green`, or two or three lamps such as `off;off;on`",
+    "TrailerAction": "connects and disconnects",
+    "TrafficAreaAction": "a polygon, or ranges of roads",
     "LateralDistanceAction": "without `DynamicConstraints`",
     "MiscObject": "shown as a barrier or a cone",
 }
@@ -194,12 +229,24 @@ NOTED = {"LightStateAction", "AssignControllerAction", "ActivateControllerAction
 ALONE = {element for kind, element in REFUSED.items() if kind in MAKERS or kind is actions.EnvironmentAction}
 
 
+GLOBALS = {**GLOBAL_ACTIONS, **TRAFFIC_ACTIONS}
+del GLOBALS["TrafficAction"]  # it only contains one of the others
+
+
 def page() -> str:
     """Return the page."""
-    parts = [HEAD.format(versions=", ".join(VERSIONS))]
+    parts = [
+        HEAD.format(
+            versions=", ".join(VERSIONS),
+            vehicles=MOST_VEHICLES,
+            rate=MOST_PER_S,
+            far=FARTHEST_M,
+            actions=MOST_ACTIONS,
+        )
+    ]
     for title, names, read in (
         ("Private actions", PRIVATE, PRIVATE_ACTIONS),
-        ("Global actions", GLOBAL, GLOBAL_ACTIONS),
+        ("Global actions", GLOBAL, GLOBALS),
         ("Conditions of entities", ENTITY, ENTITY_CONDITIONS),
         ("Conditions of values", VALUE, VALUE_CONDITIONS),
         ("Positions", POSITION, POSITIONS),
@@ -231,13 +278,14 @@ TAIL = """## Other parts
 | `TrafficSignalController` with phases, delay and reference | played |
 | priorities, `maximumExecutionCount`, triggers with edges and delays | played |
 | `selectTriggeringEntities="true"` | refused |
-| `Trailer` | refused |
+| `Trailer`, `TrailerHitch`, `TrailerCoupler` | kinematic |
+| `TrafficDefinition`, `TrafficDistribution` | played |
 | `ParameterValueDistribution` | a case for each run, see above |
 | `UserDefinedDistribution` | refused |
-| monitors, traffic definitions | refused |
+| monitors | refused |
 
 Decisions: [two modes](../decisions/0126-openscenario.md), [esmini as the judge](../decisions/0127-esmini.md),
-[files of plugins as cases](../decisions/0128-files-of-plugins.md).
+[files of plugins as cases](../decisions/0128-files-of-plugins.md), [traffic and trailers](../decisions/0181-traffic.md).
 """
 
 
