@@ -77,23 +77,24 @@ Sources, sinks, swarms and areas bring vehicles into a file while it plays, and 
   harshly; without such a place it waits. With a radius below 5 m, vehicles appear in the lane nearest to the position.
 - **A sink** removes vehicles of traffic alone. With a definition, it removes the categories of that definition.
 - **A swarm** has up to its number of vehicles. They appear between the inner circle and the ellipse about the central
-  object, whose major axis is along its heading. They are removed outside of the ellipse.
+  object. The major axis is along the heading of that object. Vehicles outside of the ellipse are removed.
 - **An area** is filled once, or is kept full if it is continuous. Vehicles that leave a continuous area are removed.
-- **`TrafficStopAction`** ends the actions of its `trafficName`, or all of them without one. Their vehicles drive on. No
-  other end comes by itself, but the end of the act or the storyboard.
+- **`TrafficStopAction`** ends the actions of its `trafficName`, or all of them without one. Their vehicles drive on.
+  Otherwise an action ends with its act or with the storyboard.
 - **Speeds** are those of the file, otherwise the posted ones, otherwise 50 km/h.
 - **Vehicles** are those of `TrafficDistribution`, or of the categories, roles and controllers of `TrafficDefinition`,
   by their weights. Without both they are cars. The roles ambulance, fire and police have blueprints. All controllers
   drive alike; those of esmini are refused.
-- **Bounds**: {vehicles} vehicles at a time in all swarms and areas of a file, and in all of its traffic; {rate:g} vehicles/s
-  for a source or a sink; {far:g} m for radius, axes and offset; {actions} actions. Above them, the file is refused.
+- **Bounds.** All swarms and areas of a file may ask for {vehicles} vehicles, and all of its traffic has no more at a
+  time. A source or a sink may have {rate:g} vehicles/s. Radius, axes and offset may have {far:g} m. A file may have
+  {actions} actions on traffic. Above these bounds, the file is refused.
 
 ## Trailers
 
-The kinematic mode plays trailers: a trailer that is an entity of its own, one that is described inside of its vehicle
-(it is called as the vehicle with a `+` behind), and those that are connected and disconnected. The axle of a trailer
-is pulled towards the hitch and does not slip. In the simulator bodies that overlap would collide, so that a file with
-a towed trailer is refused there.
+The kinematic mode plays trailers. A trailer is an entity of its own, or it is described inside of its vehicle. In that
+case its name is the vehicle's with a `+` behind. Actions connect and disconnect trailers. The axle of a trailer is
+pulled towards the hitch and does not slip. The simulator refuses a file with a towed trailer, because bodies that
+overlap would collide there.
 
 ## Cases for other players
 

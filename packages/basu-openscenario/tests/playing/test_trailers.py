@@ -64,9 +64,7 @@ def test_a_trailer_in_a_circle_keeps_the_angle_of_the_closed_form(tmp_path):
 
 
 def test_a_trailer_that_starts_askew_follows_the_tractrix(tmp_path):
-    player = player_of(
-        tmp_path, entities=towing("Ego", "T") + parts("T", COUPLER), init=begins("Ego", 100, 2), stop=30
-    )
+    player = player_of(tmp_path, entities=towing("Ego", "T") + parts("T", COUPLER), init=begins("Ego", 100, 2), stop=30)
     next(player.play())
     trailer = player.world.mover("T")
     first_rad = 0.9

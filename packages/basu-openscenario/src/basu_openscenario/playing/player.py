@@ -109,7 +109,7 @@ class Player:
             mover.teleported = True
 
     def _move(self, step_s: float) -> None:
-        """Move all entities for a step: those that drive, and then the trailers behind them."""
+        """Move all entities for a step: first the vehicles, and then the trailers behind them."""
         world = self.world
         world.traffic.drive(world, step_s)
         for mover in world.movers.values():

@@ -95,7 +95,7 @@ class Traffic:
         world.movers.pop(name).is_there = False
 
     def drive(self, world: World, step_s: float) -> None:
-        """Let all vehicles of traffic choose their speed for a step; those at the end of their road leave."""
+        """Let all vehicles of traffic choose their speed for a step; vehicles at the end of their road leave."""
         for name in [name for name, one in self.drivers.items() if one.mover.place.at_end_of_road]:
             self.remove(world, name)
         if not self.drivers:

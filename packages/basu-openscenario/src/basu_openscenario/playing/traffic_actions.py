@@ -189,7 +189,7 @@ class VehicleSink(TrafficRunning):
 
 
 class VehicleSwarm(TrafficRunning):
-    """Keeps vehicles around an entity; those that leave the ellipse are removed, and others appear."""
+    """Keeps vehicles around an entity; a vehicle outside of the ellipse is removed, and another one appears."""
 
     def __init__(self, name: str, world: World, action: reading.TrafficSwarmAction) -> None:
         """Take the action as its file has it."""

@@ -169,7 +169,7 @@ class TrafficDriver:
         self.rate_mps2 = rate
 
     def _near(self, others: Seen, middle_m: float, half_width_m: float) -> list[int]:
-        """Return the entities whose middle is ahead of the vehicle's and near its way, the nearest first."""
+        """Return the entities with a middle ahead of the vehicle's and near its way, the nearest first."""
         points, yaw_rad = self.path.points_m[:, :2], self.path.yaw_rad
         dx, dy = (others.middles_m[:, axis, None] - points[:, axis] for axis in (0, 1))
         nearest = np.argmin(dx * dx + dy * dy, axis=1)
