@@ -286,7 +286,8 @@ TAIL = """## Other parts
 | monitors | refused |
 
 Decisions: [two modes](../decisions/0126-openscenario.md), [esmini as the judge](../decisions/0127-esmini.md),
-[files of plugins as cases](../decisions/0128-files-of-plugins.md), [traffic and trailers](../decisions/0181-traffic.md).
+[files of plugins as cases](../decisions/0128-files-of-plugins.md),
+[traffic and trailers](../decisions/0181-traffic.md).
 """
 
 
