@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
 from basu.scenarios.actions.path_follower import HEADWAY_S, JAM_M, FollowerLimits
 from basu_openscenario.playing.mover import Mover
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from basu_openscenario.reading.traffic import TrafficMix
     from basu_openscenario.roads.network import Network
 
+T = TypeVar("T")
 BESIDE_M = 0.5
 """Boxes that pass each other at least so far apart are no hindrance to a new vehicle."""
 LEVEL_M = 3.0
@@ -110,7 +111,7 @@ class Traffic:
             driver.drive(step_s)
 
 
-def _by_weight(shares: Sequence[tuple[Any, float]], rng: random.Random) -> Any:  # noqa: ANN401 - as in the shares
+def _by_weight(shares: Sequence[tuple[T, float]], rng: random.Random) -> T:
     """Return one of several by their weights."""
     return rng.choices([one for one, _ in shares], [weight for _, weight in shares])[0]
 
