@@ -15,6 +15,8 @@ from basu_openscenario.reading.entities import KINDS
 from basu_openscenario.reading.global_action_reading import GLOBAL_ACTIONS
 from basu_openscenario.reading.position_reading import POSITIONS, SHAPES
 from basu_openscenario.reading.scenario_file import VERSIONS
+from basu_openscenario.reading.traffic import FARTHEST_M, MOST_ACTIONS, MOST_PER_S, MOST_VEHICLES
+from basu_openscenario.reading.traffic_reading import TRAFFIC_ACTIONS
 from basu_openscenario.staging.refusals import REFUSED
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "openscenario.md"
@@ -62,6 +64,38 @@ one batch, with workers, matrix and `--resume`. The cases are called `DIST-1`, `
 - `expectedValue` and `variance` of a log-normal distribution are its own moments, not those of the logarithm.
 - A file may have up to 10,000 runs. Runs outside the constraints of the scenario are left out, and `basu scenario list`
   says how many.
+
+## Traffic
+
+Sources, sinks, swarms and areas bring vehicles into a file while it plays, and remove them. They are called
+`traffic-1`, `traffic-2` and so on, and are in the record, in contacts and in the film like the entities of the file.
+
+- **They follow their lane**, slow down before bends, and choose at junctions by chance. Each keeps its distance to
+  what is on its way by the intelligent driver model, also to entities of the file and to the agent. They leave at the
+  end of the road. They change no lanes, give no right of way at junctions, and do not obey lights.
+- **Chance** comes from the seed of the drive (`--seed`). The same command gives the same traffic.
+- **A source** brings its first vehicle at once. A vehicle appears where neither it nor another one has to brake
+  harshly; without such a place it waits. With a radius below 5 m, vehicles appear in the lane nearest to the position.
+- **A sink** removes vehicles of traffic alone. With a definition, it removes the categories of that definition.
+- **A swarm** has up to its number of vehicles. They appear between the inner circle and the ellipse about the central
+  object. The major axis is along the heading of that object. Vehicles outside of the ellipse are removed.
+- **An area** is filled once, or is kept full if it is continuous. Vehicles that leave a continuous area are removed.
+- **`TrafficStopAction`** ends the actions of its `trafficName`, or all of them without one. Their vehicles drive on.
+  Otherwise an action ends with its act or with the storyboard.
+- **Speeds** are those of the file, otherwise the posted ones, otherwise 50 km/h.
+- **Vehicles** are those of `TrafficDistribution`, or of the categories, roles and controllers of `TrafficDefinition`,
+  by their weights. Without both they are cars. The roles ambulance, fire and police have blueprints. All controllers
+  drive alike; those of esmini are refused.
+- **Bounds.** All swarms and areas of a file may ask for {vehicles} vehicles, and all of its traffic has no more at a
+  time. A source or a sink may have {rate:g} vehicles/s. Radius, axes and offset may have {far:g} m. A file may have
+  {actions} actions on traffic. Above these bounds, the file is refused.
+
+## Trailers
+
+The kinematic mode plays trailers. A trailer is an entity of its own, or it is described inside of its vehicle. In that
+case its name is the vehicle's with a `+` behind. Actions connect and disconnect trailers. The axle of a trailer is
+pulled towards the hitch and does not slip. The simulator refuses a file with a towed trailer, because bodies that
+overlap would collide there.
 
 ## Cases for other players
 
@@ -188,6 +222,8 @@ REMARKS = {
     "ActivateControllerAction": "likewise",
     "LightStateAction": "lights of vehicles are not shown",
     "TrafficSignalStateAction": "a word such as `green`, or two or three lamps such as `off;off;on`",
+    "TrailerAction": "connects and disconnects",
+    "TrafficAreaAction": "a polygon, or ranges of roads",
     "LateralDistanceAction": "without `DynamicConstraints`",
     "MiscObject": "shown as a barrier or a cone",
 }
@@ -195,12 +231,24 @@ NOTED = {"LightStateAction", "AssignControllerAction", "ActivateControllerAction
 ALONE = {element for kind, element in REFUSED.items() if kind in MAKERS or kind is actions.EnvironmentAction}
 
 
+GLOBALS = {**GLOBAL_ACTIONS, **TRAFFIC_ACTIONS}
+del GLOBALS["TrafficAction"]  # it only contains one of the others
+
+
 def page() -> str:
     """Return the page."""
-    parts = [HEAD.format(versions=", ".join(VERSIONS))]
+    parts = [
+        HEAD.format(
+            versions=", ".join(VERSIONS),
+            vehicles=MOST_VEHICLES,
+            rate=MOST_PER_S,
+            far=FARTHEST_M,
+            actions=MOST_ACTIONS,
+        )
+    ]
     for title, names, read in (
         ("Private actions", PRIVATE, PRIVATE_ACTIONS),
-        ("Global actions", GLOBAL, GLOBAL_ACTIONS),
+        ("Global actions", GLOBAL, GLOBALS),
         ("Conditions of entities", ENTITY, ENTITY_CONDITIONS),
         ("Conditions of values", VALUE, VALUE_CONDITIONS),
         ("Positions", POSITION, POSITIONS),
@@ -232,13 +280,15 @@ TAIL = """## Other parts
 | `TrafficSignalController` with phases, delay and reference | played |
 | priorities, `maximumExecutionCount`, triggers with edges and delays | played |
 | `selectTriggeringEntities="true"` | refused |
-| `Trailer` | refused |
+| `Trailer`, `TrailerHitch`, `TrailerCoupler` | kinematic |
+| `TrafficDefinition`, `TrafficDistribution` | played |
 | `ParameterValueDistribution` | a case for each run, see above |
 | `UserDefinedDistribution` | refused |
-| monitors, traffic definitions | refused |
+| monitors | refused |
 
 Decisions: [two modes](../decisions/0126-openscenario.md), [esmini as the judge](../decisions/0127-esmini.md),
-[files of plugins as cases](../decisions/0128-files-of-plugins.md).
+[files of plugins as cases](../decisions/0128-files-of-plugins.md),
+[traffic and trailers](../decisions/0181-traffic.md).
 """
 
 

@@ -46,6 +46,7 @@ HEAD = """# Files that esmini judges
 The kinematic mode and esmini 3.6.0 play the same files in steps of 10 ms. Distance and angle are the greatest ones over
 all entities and steps. The events are changes of state that both have, with the greatest difference in steps. A file
 agrees within 1 cm, 1 mrad and the same step. The last column has the first difference, or the refusal.
+Vehicles of traffic are drawn by chance in both, and are not compared.
 [The decision](../decisions/0127-esmini.md) has the causes of the differences.
 
 {files} files: {played} played, {agreed} agree; {times}.

@@ -11,6 +11,7 @@ from basu_openscenario.playing.player import make_player
 from basu_openscenario.reading.scenario_file import read_scenario
 from basu_openscenario.staging.bodies import middle_of
 from openscenario_texts import begins, event, lane_change, scenario, speed_action, story, vehicle, written
+from traffic_texts import sink, source, swarm
 
 AGENT = """
 import carla
@@ -99,12 +100,32 @@ def test_an_agent_drives_the_entity_and_the_others_move_as_written(cut_in, tmp_p
     assert apart_m(rows, cut_in, "Other", first_other) < CLOSE_M
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("plugin")
+def test_traffic_is_in_the_record_and_the_same_again(tmp_path, capsys):
+    init = source(262, radius=12, rate=0.5) + sink(430) + begins("Ego", 300, 4)
+    file = written(tmp_path, scenario(init=init, stop=12, revision=(1, 3)), "traffic.xosc")
+    found = []
+    for nth in range(2):
+        main(["scenario", "run", str(file), "--workers", "1", "--output", str(tmp_path / f"runs{nth}")])
+        found.append(record(tmp_path / f"runs{nth}"))
+    rows, result = found[0]
+    assert rows == found[1][0], capsys.readouterr()
+    roles = [one["role"] for one in result["case"]["actors"]]
+    assert roles == [f"traffic-{nth}" for nth in range(1, len(roles) + 1)]
+    assert 4 <= len(roles) <= 7  # one at once, and one each two seconds where there is room
+    seen = [one for row in rows for one in row["others"]]
+    assert max(math.hypot(one["velocity_x_mps"], one["velocity_y_mps"]) for one in seen) == pytest.approx(10.0, abs=0.5)
+    assert result["collisions"]["number"] == 0  # vehicles behind the slower ego keep their distance
+
+
 @pytest.mark.usefixtures("plugin")
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
         ("<OpenSCENARIO>", "cut-in.xosc:1: this is not well-formed XML"),
         (scenario(revision=(3, 0)), "version 3.0 is unknown"),
+        (scenario(init=swarm("Ego", count=10**6) + begins("Ego", 50, 8)), "up to 200 vehicles of traffic at a time"),
         (scenario(init=begins("Ego", "$where", 8)), "'where' is not declared here"),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu_openscenario.playing.running_action import ALONG, BOTH, AtOnce, RunningAction
+from basu_openscenario.playing.towing import align
 from basu_openscenario.playing.transition import SMALL
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ class Teleport(AtOnce):
         place.at_end_of_road = False
         self.mover.place, self.mover.rear_m = place, None
         self.mover.moved_along = self.mover.speed_is_set = self.mover.teleported = True
+        if self.mover.tow is None:
+            align(self.mover)
 
 
 class RouteAssignment(AtOnce):

@@ -31,6 +31,8 @@ from basu_openscenario.playing.longitudinal import DistanceKeeping, SpeedChange
 from basu_openscenario.playing.side_distance import SideDistance
 from basu_openscenario.playing.speed_profile import SpeedProfile
 from basu_openscenario.playing.synchronisation import Synchronisation
+from basu_openscenario.playing.towing import TrailerConnection, TrailerDisconnection
+from basu_openscenario.playing.traffic_actions import TRAFFIC_MAKERS
 from basu_openscenario.playing.triggers import RunningCondition, RunningTrigger
 from basu_openscenario.reading import actions
 from basu_openscenario.reading.conditions import ByElement, ByEntity, BySignal, BySignalController, ByTime, ByVariable
@@ -63,6 +65,8 @@ MAKERS: dict[type, Callable[..., RunningAction]] = {
     actions.AssignControllerAction: ControllerAssignment,
     actions.ActivateControllerAction: lambda name, world, mover, _: ControllerActivation(name, world, mover),
     actions.LightStateAction: LightChange,
+    actions.ConnectTrailerAction: TrailerConnection,
+    actions.DisconnectTrailerAction: lambda name, world, mover, _: TrailerDisconnection(name, world, mover),
 }
 """What does each private action."""
 
@@ -74,6 +78,13 @@ def private_action(name: str, world: World, mover: Mover, action: actions.Privat
     except ScenarioError as error:
         raise at_line(line, error) from error
     made.line = line
+    return made
+
+
+def global_action(name: str, world: World, action: actions.GlobalAction, line: str = "") -> RunningAction:
+    """Return a global action at work."""
+    made = TRAFFIC_MAKERS.get(type(action), WorldChange)(name, world, action)
+    made.line = line or made.line
     return made
 
 
@@ -115,7 +126,7 @@ def build(scenario: ScenarioFile, world: World) -> tuple[Element, list[RunningAc
     for element, start, stop in pending:
         element.start_trigger = make(start)
         element.stop_trigger = make(stop)
-    init: list[RunningAction] = [WorldChange("init", world, action) for action in board.global_actions]
+    init: list[RunningAction] = [global_action("init", world, action) for action in board.global_actions]
     for entity, action, line in board.private_actions:
         meant = scenario.selections.get(entity, (entity,))
         init += [private_action("init", world, world.mover(name), action, line) for name in meant]
@@ -129,8 +140,7 @@ def _event(event: Event, movers: list[Mover], world: World) -> EventElement:
         if one.is_private:
             made += [_private(one, world, mover) for mover in movers]
         else:
-            made.append(WorldChange(one.name, world, one.action))  # type: ignore[arg-type]
-            made[-1].line = one.line  # type: ignore[attr-defined]
+            made.append(global_action(one.name, world, one.action, one.line))  # type: ignore[arg-type]
     return EventElement(event.name, made, event.most, event.priority)
 
 

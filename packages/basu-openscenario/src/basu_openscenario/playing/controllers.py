@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from basu.errors import ScenarioError
 from basu_openscenario.reading.actions import ActivateControllerAction, AssignControllerAction
+from basu_openscenario.reading.entities import PROGRAMS_OWN
 
 if TYPE_CHECKING:
     from basu_openscenario.reading.entities import Controller
     from basu_openscenario.reading.scenario_file import ScenarioFile
 
-PROGRAMS_OWN = "esminiController"
-"""The property by which files ask for a controller that is built into esmini."""
 DEFAULT = "DefaultController"
 
 

@@ -64,6 +64,10 @@ class Mover:
     """x, y, z and heading at the end of the step before."""
     rear_m: tuple[float, float] | None = None
     """The rear axle of a vehicle with its reference point elsewhere; None: as its pose has it."""
+    tow: Mover | None = None
+    """The vehicle that tows it."""
+    trailer: Mover | None = None
+    """The trailer that it tows."""
 
     def __post_init__(self) -> None:
         """Put the rear axle where the entity begins."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu_openscenario.playing.building import build
 from basu_openscenario.playing.controllers import check_controllers
 from basu_openscenario.playing.elements import State
+from basu_openscenario.playing.towing import align, pull_trailers
 from basu_openscenario.playing.transition import SMALL
 from basu_openscenario.playing.world import World, make_world
 from basu_openscenario.roads.network import Network
@@ -82,13 +83,7 @@ class Player:
         world = self.world
         world.step_s = step_s
         if not self._begun:
-            self._begun = True
-            for action in self.init:
-                action.start()  # type: ignore[attr-defined]
-            self.board.start()
-            for mover in world.movers.values():
-                mover.remember()
-                mover.teleported = True
+            self._begin()
         self.board.check_triggers()
         for action in self.init:
             action.step()  # type: ignore[attr-defined]
@@ -96,19 +91,43 @@ class Player:
         if self.board.state is not State.RUNNING:
             return False
         world.time_s += step_s
+        self._move(step_s)
+        return True
+
+    def _begin(self) -> None:
+        """Do the init actions, and start the storyboard."""
+        self._begun = True
+        movers = self.world.movers
+        for mover in movers.values():
+            if mover.tow is None:
+                align(mover)
+        for action in self.init:
+            action.start()  # type: ignore[attr-defined]
+        self.board.start()
+        for mover in movers.values():
+            mover.remember()
+            mover.teleported = True
+
+    def _move(self, step_s: float) -> None:
+        """Move all entities for a step: first the vehicles, and then the trailers behind them."""
+        world = self.world
+        world.traffic.drive(world, step_s)
         for mover in world.movers.values():
             self._drive(mover, step_s)
         for mover in world.movers.values():
             mover.pull()
-            mover.watch(world.time_s)
+        pull_trailers(world.movers.values())
         for mover in world.movers.values():
+            if mover.name not in world.traffic.drivers:  # no condition names a vehicle of traffic
+                mover.watch(world.time_s)
             mover.settle(step_s)
-        return True
 
     def _drive(self, mover: Mover, step_s: float) -> None:
         """Move an entity along its lane, unless an action has moved it in this step, or an agent drives it."""
         if mover.given is not None:
             mover.follow(mover.given, step_s)
+        if mover.tow is not None:
+            return
         if abs(mover.speed_mps) > SMALL and not mover.moved_along and mover.place.road is not None:
             mover.place.move(mover.speed_mps * step_s)
             mover.moved_along = mover.speed_is_set = True
@@ -138,13 +157,16 @@ def _pose(mover: Mover) -> Pose:
     return Pose(mover.name, place.x_m, place.y_m, place.z_m, place.h_rad, place.p_rad, place.r_rad, mover.speed_mps)
 
 
-def make_player(scenario: ScenarioFile, *, with_controllers: bool = True, ego: str | None = None) -> Player:
+def make_player(
+    scenario: ScenarioFile, *, with_controllers: bool = True, ego: str | None = None, seed: int = 0
+) -> Player:
     """Return a player of a scenario.
 
     Args:
         scenario: as its file has it.
         with_controllers: whether controllers of other programs are refused; otherwise all entities play as written.
         ego: the entity that an agent drives; its controllers do not count.
+        seed: of the choices of traffic.
 
     Raises:
         ScenarioError: its road network cannot be read, or it asks for what is not supported.
@@ -153,6 +175,7 @@ def make_player(scenario: ScenarioFile, *, with_controllers: bool = True, ego: s
         check_controllers(scenario, ego)
     network = read_network(scenario.road_file) if scenario.road_file is not None else Network(scenario.path)
     world = make_world(scenario, network)
+    world.traffic.seed(seed)
     board, init = build(scenario, world)
     player = Player(scenario, world, board, list(init))
     for element in board.all():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 LONGEST_M = 1e5
 
 
-def _steps(start: Place, end: Place) -> tuple[bool, tuple[Step, ...], float]:
+def steps_between(start: Place, end: Place) -> tuple[bool, tuple[Step, ...], float]:
     """Return the way from one place to another: whether it begins along s, the roads entered, and its length in m.
 
     Raises:
@@ -53,7 +53,7 @@ def road_path(network: Network, places: Sequence[Place]) -> list[str]:
     assert network.roads, "a route needs roads"
     roads = [places[0].road_number]
     for start, end in pairwise(places):
-        roads += [step.road for step in _steps(start, end)[1]]
+        roads += [step.road for step in steps_between(start, end)[1]]
     return roads
 
 
@@ -66,7 +66,7 @@ def route_place(network: Network, places: Sequence[Place], s_m: float) -> Place:
     left_m = s_m
     place = places[0].copy()
     for start, end in pairwise(places):
-        forwards, steps, length_m = _steps(start, end)
+        forwards, steps, length_m = steps_between(start, end)
         if left_m > length_m and end is not places[-1]:
             left_m -= length_m
             continue

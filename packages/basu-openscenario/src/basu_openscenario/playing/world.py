@@ -10,6 +10,8 @@ from basu.errors import ScenarioError
 from basu_openscenario.playing.curves import lay
 from basu_openscenario.playing.mover import Mover
 from basu_openscenario.playing.routes import road_path, route_place
+from basu_openscenario.playing.towing import connect
+from basu_openscenario.playing.traffic import Traffic
 from basu_openscenario.reading.positions import (
     LanePosition,
     Orientation,
@@ -47,6 +49,7 @@ class World:
     environment: dict[str, str] = field(default_factory=dict)
     time_s: float = 0.0
     step_s: float = 0.0
+    traffic: Traffic = field(default_factory=Traffic)
     acting: dict[str, list[RunningAction]] = field(default_factory=dict)
     """The actions of each entity that have begun, and perhaps ended."""
 
@@ -215,6 +218,9 @@ def lane_beside(lane: int, by: int) -> int:
 def make_world(scenario: ScenarioFile, network: Network) -> World:
     """Return the world of a scenario before anything has moved."""
     movers = {entity.name: _mover(entity, network) for entity in scenario.entities.values()}
+    for mover in movers.values():
+        if mover.entity.trailer:
+            connect(mover, movers[mover.entity.trailer])
     variables = {**scenario.parameters, **scenario.variables}
     return World(network, movers, variables, scenario.signal_controllers)
 

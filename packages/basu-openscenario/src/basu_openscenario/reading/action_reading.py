@@ -9,6 +9,8 @@ from basu_openscenario.reading.actions import (
     ActivateControllerAction,
     AssignControllerAction,
     AssignRouteAction,
+    ConnectTrailerAction,
+    DisconnectTrailerAction,
     Dynamics,
     FinalSpeed,
     FollowTrajectoryAction,
@@ -271,6 +273,16 @@ def _lights(node: Node, _: Catalogs) -> PrivateAction:
     return LightStateAction(name, mode, node.number("transitionTime", 0.0))
 
 
+def _trailer(node: Node, _: Catalogs) -> PrivateAction:
+    """Return a ``ConnectTrailerAction`` or a ``DisconnectTrailerAction``."""
+    inside = node.only()
+    if inside.tag == "ConnectTrailerAction":
+        return ConnectTrailerAction(inside.text("trailerRef"))
+    if inside.tag == "DisconnectTrailerAction":
+        return DisconnectTrailerAction()
+    raise inside.fault(f"<{inside.tag}> is no action on a trailer; use ConnectTrailerAction or DisconnectTrailerAction")
+
+
 PRIVATE_ACTIONS: dict[str, Callable[[Node, Catalogs], PrivateAction]] = {
     "SpeedAction": _speed,
     "SpeedProfileAction": _speed_profile,
@@ -287,5 +299,6 @@ PRIVATE_ACTIONS: dict[str, Callable[[Node, Catalogs], PrivateAction]] = {
     "AssignControllerAction": _assign_controller,
     "ActivateControllerAction": _activate,
     "LightStateAction": _lights,
+    "TrailerAction": _trailer,
 }
 """The reader of each private action, by its element."""

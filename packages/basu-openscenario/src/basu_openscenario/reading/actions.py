@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from basu_openscenario.reading.traffic import TrafficAction
+
 if TYPE_CHECKING:
     from basu_openscenario.reading.entities import Controller
     from basu_openscenario.reading.positions import Position, RouteSpec, TrajectorySpec
@@ -204,6 +206,18 @@ class LightStateAction:
     transition_s: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class ConnectTrailerAction:
+    """Let the entity tow a trailer."""
+
+    entity: str
+
+
+@dataclass(frozen=True, slots=True)
+class DisconnectTrailerAction:
+    """Let the entity go on without its trailer."""
+
+
 PrivateAction = (
     SpeedAction
     | SpeedProfileAction
@@ -220,6 +234,8 @@ PrivateAction = (
     | AssignControllerAction
     | ActivateControllerAction
     | LightStateAction
+    | ConnectTrailerAction
+    | DisconnectTrailerAction
 )
 
 
@@ -286,5 +302,6 @@ GlobalAction = (
     | ModifyVariableAction
     | TrafficSignalStateAction
     | TrafficSignalControllerAction
+    | TrafficAction
 )
 Action = PrivateAction | GlobalAction

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from basu_openscenario.reading.xml_node import Node
 
 KINDS = {"Vehicle": "vehicle", "Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
+PROGRAMS_OWN = "esminiController"
+"""The property by which files ask for a controller that is built into esmini."""
 UNLIMITED = 1e10
 """A limit that no motion reaches, m/s or m/s²."""
 
@@ -59,52 +61,34 @@ class Entity:
     line: str = ""
     model: str = ""
     """The name that the file gives the body, such as a blueprint of CARLA."""
+    role: str = ""
+    """What a vehicle is used for, such as ``police``."""
     ahead_m: float = 0.0
     """How far the reference point is ahead of the rear axle, by esmini's property `refpoint_x_offset`."""
+    hitch_m: float | None = None
+    """Where a trailer is connected: m ahead of the reference point."""
+    coupler_m: float | None = None
+    """Where a trailer itself is connected: m ahead of its reference point."""
+    trailer: str = ""
+    """The entity that it tows from the begin."""
 
 
-def read_entities(root: Node, catalogs: Catalogs) -> tuple[dict[str, Entity], dict[str, tuple[str, ...]]]:
-    """Return the entities by name, and the members of each selection of entities by its name.
+def read_entity(node: Node, name: str, catalogs: Catalogs) -> Entity:
+    """Return the entity of a ``ScenarioObject`` or a ``ScenarioObjectTemplate``.
 
     Raises:
-        ScenarioError: two have one name, or one cannot be read.
+        ScenarioError: it is of a kind that is not supported, or cannot be read.
     """
-    found: dict[str, Entity] = {}
-    block = root.child("Entities")
-    for node in block.children("ScenarioObject"):
-        entity = _entity(node, catalogs)
-        if entity.name in found:
-            raise node.fault(f"two entities are called '{entity.name}'; name one otherwise")
-        found[entity.name] = entity
-    selections: dict[str, tuple[str, ...]] = {}
-    for node in block.children("EntitySelection"):
-        members = node.child("Members")
-        names = [one.text("entityRef") for one in members.children("EntityRef")]
-        kinds = {one.text("type") for one in members.children("ByType")}
-        names += [entity.name for entity in found.values() if entity.kind in kinds]
-        for name in names:
-            if name not in found:
-                raise node.fault(f"the selection names the entity '{name}', which does not exist; correct the name")
-        selections[node.text("name")] = tuple(names)
-    return found, selections
-
-
-def _entity(node: Node, catalogs: Catalogs) -> Entity:
-    """Return one ``ScenarioObject``."""
     described = resolved(node.only("ObjectController", "MonitorDeclarations"), catalogs)
     if described.tag not in KINDS:
         raise described.fault(f"<{described.tag}> is not supported as an entity; use one of {', '.join(KINDS)}")
-    trailer = described.find("Trailer")
-    reference = None if trailer is None else trailer.find("TrailerRef")
-    if trailer is not None and (reference is None or reference.text("entityRef", "")):
-        raise trailer.fault("<Trailer> is not supported; let the trailer be an entity of its own, or remove it")
     kind = KINDS[described.tag]
     category = described.text(f"{'miscObject' if kind == 'miscellaneous' else kind}Category", "")
     holders = [one for one in node.children("ObjectController") if any(True for _ in one.children())]
     controllers = [read_controller(one, catalogs) for one in holders]
     ahead_m = _ahead_m(described) if kind == "vehicle" else 0.0
     return Entity(
-        node.text("name"),
+        name,
         kind,
         category,
         _box(described, ahead_m),
@@ -113,8 +97,28 @@ def _entity(node: Node, catalogs: Catalogs) -> Entity:
         tuple(controllers),
         f"{node.path}:{node.element.sourceline}",
         described.text("name", ""),
+        described.text("role", ""),
         ahead_m,
+        _offset(described.find("TrailerHitch")),
+        _offset(described.find("TrailerCoupler")),
+        _trailer(described.find("Trailer"), name),
     )
+
+
+def _offset(node: Node | None) -> float | None:
+    """Return where a hitch or a coupler is, in m ahead of the reference point; None without one."""
+    return None if node is None else node.number("dx")
+
+
+def _trailer(node: Node | None, name: str) -> str:
+    """Return the name of a vehicle's trailer; empty without one."""
+    if node is None:
+        return ""
+    reference = node.find("TrailerRef") or node.find("EntityRef")
+    if reference is not None:
+        return reference.text("entityRef", "")
+    node.child("Trailer")
+    return f"{name}+"
 
 
 def _ahead_m(node: Node) -> float:

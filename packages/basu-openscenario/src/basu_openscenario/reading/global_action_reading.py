@@ -16,6 +16,7 @@ from basu_openscenario.reading.actions import (
 )
 from basu_openscenario.reading.catalogs import referred
 from basu_openscenario.reading.position_reading import read_position
+from basu_openscenario.reading.traffic_reading import read_traffic_action
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from basu_openscenario.reading.catalogs import Catalogs
     from basu_openscenario.reading.xml_node import Node
 
-GROUPS = ("InfrastructureAction", "TrafficSignalAction", "TrafficAction", "UserDefinedAction")
+GROUPS = ("InfrastructureAction", "TrafficSignalAction", "UserDefinedAction")
 """Elements that only contain an action."""
 
 
@@ -99,5 +100,6 @@ GLOBAL_ACTIONS: dict[str, Callable[[Node, Catalogs], GlobalAction]] = {
     "ParameterAction": _variable,
     "TrafficSignalStateAction": _signal,
     "TrafficSignalControllerAction": _signal_controller,
+    "TrafficAction": read_traffic_action,
 }
 """The reader of each global action, by its element."""

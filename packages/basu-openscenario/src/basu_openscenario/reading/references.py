@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from basu.errors import ScenarioError
 from basu_openscenario.reading.conditions import ByElement, ByEntity
+from basu_openscenario.reading.traffic import (
+    MOST_ACTIONS,
+    MOST_VEHICLES,
+    TrafficAction,
+    TrafficAreaAction,
+    TrafficStopAction,
+    TrafficSwarmAction,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,6 +37,7 @@ def check_references(scenario: ScenarioFile) -> None:
     names = {*scenario.entities, *scenario.selections}
     elements = element_names(board)
 
+    _check_traffic(board)
     for name, line in _entities_named(board):
         if name and name not in names:
             there = ", ".join(sorted(names)) or "none"
@@ -43,8 +52,33 @@ def check_references(scenario: ScenarioFile) -> None:
             )
 
 
+def _check_traffic(board: Storyboard) -> None:
+    """Refuse more actions on traffic, or more vehicles at a time, than there may be, and ends of none of them."""
+    groups = [group for story in board.stories for act in story.acts for group in act.groups]
+    events = [event for group in groups for maneuver in group.maneuvers for event in maneuver.events]
+    given = [*board.global_actions, *(one.action for event in events for one in event.actions)]
+    found = [one for one in given if isinstance(one, TrafficAction)]
+    names = {one.name for one in found if not isinstance(one, TrafficStopAction)}
+    count = 0
+    for nth, one in enumerate(found, 1):
+        if nth > MOST_ACTIONS:
+            raise ScenarioError(f"{one.line}: this is the {nth}th action on traffic; up to {MOST_ACTIONS} are played")
+        if isinstance(one, TrafficSwarmAction | TrafficAreaAction):
+            count += one.count
+        if count > MOST_VEHICLES:
+            raise ScenarioError(
+                f"{one.line}: swarms and areas ask for {count} vehicles of traffic in all; a scenario has up to "
+                f"{MOST_VEHICLES} at a time: make them fewer"
+            )
+        if isinstance(one, TrafficStopAction) and one.name and one.name not in names:
+            there = ", ".join(sorted(name for name in names if name)) or "none with a name"
+            raise ScenarioError(f"{one.line}: no action on traffic is called '{one.name}'; there are {there}")
+
+
 def _entities_named(board: Storyboard) -> Iterator[tuple[str, str]]:
     """Yield every entity that a storyboard names, with file and line."""
+    for one in board.global_actions:
+        yield from ((name, getattr(one, "line", "")) for name in _named(one))
     for entity, action, line in board.private_actions:
         yield from ((name, line) for name in (entity, *_named(action)))
     for group in (group for story in board.stories for act in story.acts for group in act.groups):

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from basu_openscenario.reading.catalogs import catalogs_of
-from basu_openscenario.reading.entities import Entity, read_entities
+from basu_openscenario.reading.entities import Entity
 from basu_openscenario.reading.parameters import TYPES, Declaration, check_given, check_type, declarations, declared
 from basu_openscenario.reading.references import check_references
 from basu_openscenario.reading.storyboard import Storyboard, read_storyboard
+from basu_openscenario.reading.trailers import read_entities
 from basu_openscenario.reading.xml_node import read_xml
 
 if TYPE_CHECKING:

@@ -249,6 +249,15 @@ class Network:
             score += height_m if height_m > 2.0 else 0.0
         return score, s_m, t_m
 
+    def samples_within(self, x_m: float, y_m: float, radius_m: float) -> list[int]:
+        """Return the samples of all reference lines within a radius, `SAMPLE_M` apart, in the order of the file."""
+        return sorted(self._sampled().tree.query_ball_point((x_m, y_m), radius_m))
+
+    def sample(self, index: int) -> tuple[Road, float]:
+        """Return road and s in m of one of the samples."""
+        numbers, starts, points, _ = self._sampled()
+        return self.roads[numbers[int(np.searchsorted(starts, index, side="right")) - 1]], float(points[index, 2])
+
     def _sampled(self) -> Samples:
         """Return points of all roads' lines, with a tree that finds the points near another."""
         if self._samples is None:

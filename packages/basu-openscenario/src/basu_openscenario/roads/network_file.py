@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,8 @@ from basu_openscenario.roads.road import Lane, LaneSection, Link, Piece, Profile
 if TYPE_CHECKING:
     from basu_openscenario.reading.xml_node import Node
 
+UNITS_MPS = {"": 1.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+"""The units of posted speeds, in m/s."""
 LONGEST_M = 1e5
 """A road above this is refused: the longest of public maps has 13 km, and points of each are kept every 2 m."""
 
@@ -89,7 +92,18 @@ def _road(node: Node) -> Road | None:
         None if links is None else _link(links.find("predecessor")),
         None if links is None else _link(links.find("successor")),
         node.text("rule", "RHT") == "LHT",
+        tuple((one.number("s", 0.0), _limit(one.find("speed"))) for one in node.children("type")),
     )
+
+
+def _limit(node: Node | None) -> float | None:
+    """Return a posted speed in m/s; None without a number, such as ``no limit``, or with an unknown unit."""
+    try:
+        value = math.nan if node is None else float(node.text("max"))
+    except ValueError:
+        return None
+    unit = UNITS_MPS.get("" if node is None else node.text("unit", ""))
+    return value * unit if unit is not None and 0.0 < value < math.inf else None
 
 
 def _link(node: Node | None) -> Link | None:

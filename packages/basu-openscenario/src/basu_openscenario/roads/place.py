@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu_openscenario.roads.network import DRIVING, Network
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from basu_openscenario.roads.network import Entry
     from basu_openscenario.roads.road import Road, RoadPoint
@@ -67,6 +67,8 @@ class Place:
     at_end_of_road: bool = False
     route: Sequence[str] = ()
     """The roads of a route, in their order."""
+    choose: Callable[[list[Entry]], Entry] | None = None
+    """The choice among several ways on where the route names none; None: by the angle."""
 
     def copy(self) -> Place:
         """Return a place of its own with the same values."""
@@ -241,13 +243,14 @@ class Place:
         return True
 
     def _lane_at(self, s_m: float) -> int:
-        """Return the lane that the present one becomes at another s of the same road."""
+        """Return the lane that the present one becomes at another s of the same road; if it ends, the nearest one."""
         assert self.road is not None, "it is on a road"
-        if len(self.road.sections) == 1:
-            return self.lane
         held = min(max(s_m, 0.0), self.road.length_m)
-        lane = self.network.lane_through(self.road, self.lane, self.s_m, held)
-        if lane == 0 and self.lane != 0:
+        lane = self.lane
+        if len(self.road.sections) > 1:
+            lane = self.network.lane_through(self.road, self.lane, self.s_m, held)
+        section = self.road.section(held)
+        if self.lane and (not lane or (lane in section.lanes and section.width_m(lane, held) < SMALL)):
             t_m = self.offset_m + self.road.lane_t_m(self.lane, self.s_m)
             lane, _ = self.road.lane_at(held, t_m, self.kinds)
         return lane
@@ -276,6 +279,8 @@ class Place:
         for entry in entries:
             if entry.road.number in self.route:
                 return entry
+        if self.choose is not None:
+            return self.choose(entries)
         here = self.road.line(edge).h_rad + (0.0 if at_end else math.pi)
 
         def gap(entry: Entry) -> float:

@@ -159,6 +159,8 @@ class Road:
     predecessor: Link | None = None
     successor: Link | None = None
     left_hand: bool = False
+    limits: tuple[tuple[float, float | None], ...] = ()
+    """From s on, in m: the posted speed in m/s; None where the file posts none."""
     _starts: list[float] = field(default_factory=list)
 
     def line(self, s_m: float) -> LinePoint:
@@ -175,6 +177,10 @@ class Road:
             if s_m >= section.s_m - MARGIN_M:
                 return section
         return self.sections[0]
+
+    def limit_mps(self, s_m: float) -> float | None:
+        """Return the posted speed at ``s_m``; None where there is none."""
+        return next((limit for from_m, limit in reversed(self.limits) if s_m >= from_m - MARGIN_M), None)
 
     def lane_t_m(self, lane: int, s_m: float) -> float:
         """Return where the middle of a lane is: m to the left of the reference line."""

@@ -28,6 +28,14 @@ VEHICLES = {
     "bicycle": "vehicle.gazelle.omafiets",
 }
 """The blueprint of each category of vehicles."""
+ROLES = {
+    "ambulance": "vehicle.ford.ambulance",
+    "fire": "vehicle.carlamotors.firetruck",
+    "police": "vehicle.dodge.charger_police",
+}
+"""The blueprint of vehicles with a role; other roles are not shown."""
+ROLE_CATEGORIES = ("car", "van", "truck")
+"""The categories of which a role changes the blueprint."""
 ADULT, CHILD = "walker.pedestrian.0001", "walker.pedestrian.0009"
 GROWN_M = 1.4
 """A pedestrian with a lower box is a child."""
@@ -50,9 +58,11 @@ class Heading(NamedTuple):
 
 
 def blueprint_of(entity: Entity) -> str:
-    """Return the blueprint of an entity: its model's name where that is one of CARLA's, otherwise by its category."""
+    """Return the blueprint of an entity: its model if that is one of CARLA's, otherwise by its role or category."""
     if entity.model.startswith(("vehicle.", "walker.", "static.")):
         return entity.model
+    if entity.role in ROLES and entity.category in ROLE_CATEGORIES:
+        return ROLES[entity.role]
     if entity.kind == "vehicle":
         return VEHICLES.get(entity.category, VEHICLES["car"])
     if entity.kind == "pedestrian":

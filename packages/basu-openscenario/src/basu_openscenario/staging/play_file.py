@@ -6,12 +6,13 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from basu.errors import ScenarioError
 from basu.scenarios.actions import Action
-from basu.scenarios.stage import EGO, Controls, Pose
+from basu.scenarios.stage import EGO, ActorSpec, Controls, Pose
 from basu_openscenario.playing.condition_tests import signal_state
 from basu_openscenario.playing.mover import Given
 from basu_openscenario.reading.entities import BoundingBox
-from basu_openscenario.staging.bodies import middle_of, reference_of
+from basu_openscenario.staging.bodies import blueprint_of, middle_of, reference_of
 from basu_openscenario.staging.refusals import light_of
 
 if TYPE_CHECKING:
@@ -36,9 +37,12 @@ class PlayFile(Action):
         super().__init__("play the storyboard")
         self.player, self.ego, self.by_agent, self.longest_s = player, ego, by_agent, longest_s
         self.lights: dict[str, str] = {}
+        self.traffic: set[str] = set()
+        """The vehicles of traffic that are in the simulator."""
 
     def begin(self) -> None:
-        """Give the entity of the ego the box of the vehicle that drives, and let it begin with its speed."""
+        """Seed the traffic, and give the entity of the ego the box and the speed of the vehicle that drives."""
+        self.player.world.traffic.seed(self.stage.rng.getrandbits(64))
         mover, body = self.player.world.mover(self.ego), self.stage.ego
         box = mover.entity.box
         size = BoundingBox(box.centre_m, 2.0 * body.half_length_m, 2.0 * body.half_width_m, box.height_m)
@@ -57,8 +61,9 @@ class PlayFile(Action):
         over_s = self._advance()
         if over_s is not None:
             return f"the storyboard came to its end at {over_s:.2f} s"
+        new = self._bring()
         for name, mover in self.player.world.movers.items():
-            if name == self.ego and self.by_agent:
+            if name in new or (name == self.ego and self.by_agent):
                 continue
             self._lead(EGO if name == self.ego else name, mover)
         self._switch()
@@ -90,6 +95,29 @@ class PlayFile(Action):
             if not self.player.step(self.stage.step_s / count) or self.player.world.time_s > self.longest_s:
                 return self.player.world.time_s
         return None
+
+    def _bring(self) -> frozenset[str]:
+        """Let the simulator have the vehicles of traffic that the storyboard has; return the new ones.
+
+        A vehicle for which the simulator has no room leaves the storyboard too.
+        """
+        world, stage = self.player.world, self.stage
+        for name in sorted(self.traffic - world.traffic.drivers.keys()):
+            stage.remove(name)
+            self.traffic.remove(name)
+        before = frozenset(self.traffic)
+        for name in [name for name in world.traffic.drivers if name not in before]:
+            mover, there = world.mover(name), middle_of(world.mover(name))
+            back_m = mover.speed_mps * stage.step_s  # it is there in the next frame
+            x_m, y_m = there.x_m - back_m * math.cos(there.yaw_rad), there.y_m - back_m * math.sin(there.yaw_rad)
+            pose = there._replace(x_m=x_m, y_m=y_m)
+            try:
+                stage.add(ActorSpec(name, blueprint_of(mover.entity), pose, speed_mps=mover.speed_mps))
+            except ScenarioError:
+                world.traffic.remove(world, name)
+            else:
+                self.traffic.add(name)
+        return frozenset(self.traffic - before)
 
     def _lead(self, name: str, mover: Mover) -> None:
         """Lead an entity to where the storyboard has it in the next frame."""

@@ -16,6 +16,8 @@ REFUSED: dict[type, str] = {
     actions.EnvironmentAction: "EnvironmentAction",
     actions.AddEntityAction: "AddEntityAction",
     actions.VisibilityAction: "VisibilityAction",
+    actions.ConnectTrailerAction: "TrailerAction",
+    actions.DisconnectTrailerAction: "TrailerAction",
 }
 """Actions that a simulator would have to show and does not, with their elements."""
 LAMPS = {2: ("Red", "Green"), 3: ("Red", "Yellow", "Green")}
@@ -47,6 +49,11 @@ def check_staged(scenario: ScenarioFile) -> None:
     """
     if scenario.road_file is None:
         raise ScenarioError(f"{scenario.path}: the scenario has no road network; name one with <LogicFile>")
+    for entity in scenario.entities.values():
+        if entity.trailer:
+            raise ScenarioError(
+                f"{entity.line}: '{entity.name}' tows a trailer, which is not supported in the simulator; remove it"
+            )
     for action, line in _actions(scenario):
         name = REFUSED.get(type(action))
         if name is not None:

@@ -126,6 +126,13 @@ class Stage(Protocol):
     def let_go(self, name: str) -> None:
         """Lead it no more: it rolls as its own physics has it."""
 
+    def add(self, spec: ActorSpec) -> None:
+        """Bring a further actor into the world, with its speed; other commands follow from the next frame on.
+
+        Raises:
+            ScenarioError: its name is taken, or there is no room for it.
+        """
+
     def remove(self, name: str) -> None:
         """Take an actor out of the world."""
 

@@ -199,6 +199,14 @@ class OfflineStage:
         self._led[name] = _Led(body.velocity_x_mps, body.velocity_y_mps, 0.0, ROLLING_MPS2)
         self._note("let go", name)
 
+    def add(self, spec: ActorSpec) -> None:
+        """Bring a further actor onto the stage, with its speed."""
+        if spec.name in self._bodies:
+            raise ScenarioError(f"two actors are called '{spec.name}'; give each its own role")
+        body = self._bodies[spec.name] = _entering(spec)
+        self._led[spec.name] = _Led(body.velocity_x_mps, body.velocity_y_mps, 0.0)
+        self._note("add", spec)
+
     def remove(self, name: str) -> None:
         """Remove an actor from the stage."""
         self.body(name)

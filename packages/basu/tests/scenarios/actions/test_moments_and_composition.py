@@ -21,7 +21,7 @@ from basu.scenarios.actions import (
     Wait,
 )
 from basu.scenarios.paths import Path
-from basu.scenarios.stage import EGO, Door, Pose
+from basu.scenarios.stage import EGO, ActorSpec, Door, Pose
 from basu.scenarios.triggers import EgoPasses
 from basu.testing import OfflineStage
 from fakes.paper import actor_at, play, stage_with
@@ -95,3 +95,14 @@ def test_an_actor_that_waits_again_waits_as_long_again() -> None:
     wait, stage = Wait(1.0), stage_with()
     play(wait, stage)
     assert play(wait, stage) == pytest.approx(2.0)
+
+
+def test_an_actor_that_is_added_has_its_speed_and_a_name_of_its_own() -> None:
+    stage = stage_with(actor_at(50.0, 5.0))
+    spec = ActorSpec("late", "vehicle.nissan.micra", Pose(10.0, 20.0), speed_mps=4.0)
+    stage.add(spec)
+    stage.advance()
+    assert stage.body("late").x_m == pytest.approx(10.0 + 4.0 * stage.step_s)
+    assert stage.body("late").speed_mps == pytest.approx(4.0)
+    with pytest.raises(ScenarioError, match="two actors are called 'late'; give each its own role"):
+        stage.add(spec)

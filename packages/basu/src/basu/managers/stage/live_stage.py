@@ -70,23 +70,31 @@ class LiveStage:
         Raises:
             ScenarioError: an actor cannot be spawned.
         """
+        self._spawn(specs)
+        self._commands.carry_out()
+
+    def _spawn(self, specs: Sequence[ActorSpec]) -> None:
+        """Spawn actors; vehicles are commanded to stand."""
         for member, spec in zip(spawn_actors(self._run.client, self._run.world, specs, self._case), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
             if member.kind == "vehicle":
                 self.move(spec.name, 0.0, 0.0, 0.0)
-        self._commands.carry_out()
 
     def set_off(self, specs: Sequence[ActorSpec]) -> None:
         """Set off the actors that begin in motion."""
         for spec in specs:
-            if spec.speed_mps:
-                yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
-                if kind == "vehicle":
-                    self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
-                elif kind == "walker":
-                    self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
+            self._set_off(spec)
         self._commands.carry_out()
+
+    def _set_off(self, spec: ActorSpec) -> None:
+        """Command the speed with which an actor begins."""
+        if spec.speed_mps:
+            yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
+            if kind == "vehicle":
+                self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
+            elif kind == "walker":
+                self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
 
     def begin(self, tick: int) -> None:
         """Let the scenario's clock begin."""
@@ -197,6 +205,13 @@ class LiveStage:
     def let_go(self, name: str) -> None:
         """Lead it no more."""
         self._commands.let_go(self._member(name))
+
+    def add(self, spec: ActorSpec) -> None:
+        """Bring a further actor into the world, with its speed."""
+        if spec.name in self._cast:
+            raise ScenarioError(f"{self._case} has two actors called '{spec.name}'; give each its own role")
+        self._spawn([spec])
+        self._set_off(spec)
 
     def remove(self, name: str) -> None:
         """Take an actor out of the world."""

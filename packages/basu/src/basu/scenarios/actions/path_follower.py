@@ -122,10 +122,7 @@ class PathFollower(Action):
         lead(self.stage, self.actor, self.path, self.near, speed_mps)
 
     def _followed_mps(self, body: ActorBox) -> float:
-        """The speed by the intelligent driver model towards the nearest minded actor; inf without one ahead.
-
-        Treiber, Hennecke and Helbing 2000, "Congested traffic states", eq. 2-3.
-        """
+        """Return the speed that keeps the distance to the nearest minded actor; inf without one ahead."""
         slowest_mps = math.inf
         for name in self.minds:
             try:
@@ -135,11 +132,7 @@ class PathFollower(Action):
             ahead = gap_ahead(self.path, self.s_m, body, other)
             if ahead is None:
                 continue
-            comfortable = 2.0 * math.sqrt(self.limits.accelerate_mps2 * self.limits.brake_mps2)
-            closing = self.speed_mps * (self.speed_mps - ahead.speed_mps) / comfortable
-            gap_m = JAM_M + max(0.0, self.speed_mps * HEADWAY_S + closing)
-            rate = self.limits.accelerate_mps2 * (1.0 - (gap_m / max(ahead.gap_m, 0.1)) ** 2)
-            rate = max(rate, -self.limits.emergency_mps2)
+            rate = following_mps2(self.speed_mps, ahead, self.limits)
             slowest_mps = min(slowest_mps, self.speed_mps + rate * self.stage.step_s)
         return slowest_mps
 
@@ -151,12 +144,26 @@ class Ahead(NamedTuple):
     speed_mps: float  # of the other, along the path
 
 
-def gap_ahead(path: Path, s_m: float, body: ActorBox, other: ActorBox) -> Ahead | None:
-    """How far another is ahead on a path that ``body`` follows at ``s_m``; None where it is not on it."""
-    if math.hypot(other.x_m - body.x_m, other.y_m - body.y_m) > LOOK_M:
+def following_mps2(speed_mps: float, ahead: Ahead, limits: FollowerLimits) -> float:
+    """Return the acceleration by the intelligent driver model towards an actor ahead, at most that of an emergency.
+
+    Treiber, Hennecke and Helbing 2000, "Congested traffic states", eq. 2-3.
+    """
+    comfortable = 2.0 * math.sqrt(limits.accelerate_mps2 * limits.brake_mps2)
+    closing = speed_mps * (speed_mps - ahead.speed_mps) / comfortable
+    gap_m = JAM_M + max(0.0, speed_mps * HEADWAY_S + closing)
+    return max(limits.accelerate_mps2 * (1.0 - (gap_m / max(ahead.gap_m, 0.1)) ** 2), -limits.emergency_mps2)
+
+
+def gap_ahead(path: Path, s_m: float, body: ActorBox, other: ActorBox, look_m: float = LOOK_M) -> Ahead | None:
+    """Return how far another is ahead on a path that ``body`` follows at ``s_m``; None if it is not on it.
+
+    Actors farther than ``look_m`` are not seen.
+    """
+    if math.hypot(other.x_m - body.x_m, other.y_m - body.y_m) > look_m:
         return None
     reach_m = body.half_width_m + MARGIN_M
-    middle = path.nearest(other.x_m, other.y_m, s_m, LOOK_M + 10.0)
+    middle = path.nearest(other.x_m, other.y_m, s_m, look_m + 10.0)
     if middle.distance_m > reach_m + math.hypot(other.half_length_m, other.half_width_m):
         return None
     cos, sin = math.cos(other.yaw_rad), math.sin(other.yaw_rad)
@@ -164,11 +171,11 @@ def gap_ahead(path: Path, s_m: float, body: ActorBox, other: ActorBox) -> Ahead 
     for along, across in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         forward_m, right_m = along * other.half_length_m, across * other.half_width_m
         x_m, y_m = other.x_m + forward_m * cos - right_m * sin, other.y_m + forward_m * sin + right_m * cos
-        on_path.append(path.nearest(x_m, y_m, s_m, LOOK_M + 10.0))
+        on_path.append(path.nearest(x_m, y_m, s_m, look_m + 10.0))
     if min(p.right_m for p in on_path) > reach_m or max(p.right_m for p in on_path) < -reach_m:
         return None
     gap_m = min(p.s_m for p in on_path) - s_m - body.half_length_m
-    if max(p.s_m for p in on_path) < s_m or gap_m > LOOK_M:
+    if max(p.s_m for p in on_path) < s_m or gap_m > look_m:
         return None
     yaw_rad = path.heading_rad(middle.s_m)
     speed_mps = other.velocity_x_mps * math.cos(yaw_rad) + other.velocity_y_mps * math.sin(yaw_rad)
