@@ -19,7 +19,6 @@ from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.scenery.actors.actor_meshes import actor_meshes
-from linden.scenery.actors.posing import matrices
 from linden.sensors.camera.cameras import CAMERAS, pixels
 from linden.sensors.camera.labels import depth_m
 from linden.sensors.casting.caster import CPU, Caster, Instances
@@ -36,6 +35,7 @@ from linden.sensors.view import Seen, SensorLook
 from linden.simulation.episode import Episode
 
 if TYPE_CHECKING:
+    from linden.worlds_parts_gpu import BodiesOnDevice, PartsOnGpu
     from linden.worlds_sensors_gpu import Eyes, GpuSensors
 
 F32 = NDArray[np.float32]
@@ -74,6 +74,7 @@ class Asked(NamedTuple):
     chosen: I32
     slot: int | None  # of the body that carries the sensor; None where the sensor stands in the world
     transform: F64  # (K, 6) of the sensor: relative to that body, or in the world; m and degrees
+    there: "BodiesOnDevice | None"  # the bodies on a GPU; the table then tells only which bodies there are
     frames: NDArray[np.int64]  # (K,) steps since each world was reset
     now_s: F64  # (K,)
     colours: U8 | None  # (K, L) of the traffic lights; None where their colour cannot be seen
@@ -98,6 +99,7 @@ class WorldsSensors:
         self._lights = LightStateCache()
         self._casters: list[EmbreeCaster] = []
         self._gpu: GpuSensors | None = None
+        self._placing: PartsOnGpu
 
     # -- what the bodies are -------------------------------------------------------------------------------------------
 
@@ -243,14 +245,17 @@ class WorldsSensors:
         Raises:
             UserError: a body was not made by `Worlds.spawn`.
         """
-        from linden.sensors.casting.warp_worlds import WorldBodies  # noqa: PLC0415 - Warp, which users of a GPU have
+        from linden.sensors.casting.warp_worlds import WorldBodies, WorldEyes  # noqa: PLC0415 - Warp, for a GPU
+        from linden.worlds_parts_gpu import PartsOnGpu  # noqa: PLC0415 - likewise
         from linden.worlds_sensors_gpu import Eyes, GpuSensors  # noqa: PLC0415 - likewise
 
+        assert asked.there is not None, "worlds on a GPU say where their bodies are"
         if self._gpu is None:
-            self._gpu = GpuSensors(self._scene())
-        parts, placed = self._bodies(asked)
-        pose = matrices(self._poses(asked)).astype(np.float32)
-        return self._gpu, Eyes(pose, WorldBodies(parts.begins, parts.mesh, placed.pose))
+            self._gpu, self._placing = GpuSensors(self._scene()), PartsOnGpu()
+        parts = self._parts_of(asked)
+        poses = self._placing.poses(asked.there, parts, self._walked_of(asked.table))
+        eyes = self._placing.eyes(asked.there, asked.chosen, asked.slot, asked.transform)
+        return self._gpu, Eyes(WorldEyes(*eyes), WorldBodies(parts.begins, parts.mesh, poses))
 
     def _grow_casters(self, caster: EmbreeCaster) -> None:
         """Make a caster for each thread, and the trees of all bodies."""
@@ -304,12 +309,16 @@ class WorldsSensors:
     def _bodies(self, asked: Asked) -> tuple[PartsOfBodies, Instances]:
         """Return all parts of the bodies in worlds (K,) in their places."""
         parts, table = self._parts_of(asked), asked.table
-        walked_m = np.zeros(table.state.shape)
-        walked_m[:, : self.walked_m.shape[1]] = self.walked_m
         flat, spec_of = table.state.reshape(-1), table.spec_of.reshape(-1)
-        placed = placed_parts(parts, flat, spec_of, table.specs, walked_m.reshape(-1))
+        placed = placed_parts(parts, flat, spec_of, table.specs, self._walked_of(table).reshape(-1))
         lights = np.zeros(len(parts.mesh), np.uint32)
         return parts, Instances(parts.mesh, placed.pose, placed.pose, parts.actor_id, parts.paint, lights, *placed[1:])
+
+    def _walked_of(self, table: BodyTable) -> F64:
+        """Return how far (W, S) walkers have walked."""
+        walked_m: F64 = np.zeros(table.state.shape)
+        walked_m[:, : self.walked_m.shape[1]] = self.walked_m
+        return walked_m
 
     def _known_parts(self) -> PartRows:
         """Return the parts of all designs that were spawned."""

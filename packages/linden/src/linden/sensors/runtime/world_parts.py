@@ -108,7 +108,7 @@ def put_eye(body: Body, relative: F64, outer: F64, pose: F64) -> None:  # pragma
     follow(outer, relative, pose)
 
 
-def _build(sources: int) -> Any:
+def _build(sources: int) -> Any:  # noqa: ANN401 - numba's
     """Return the kernel of the processor; ``sources`` is part of the name of its file."""
 
     def place_bodies(
@@ -139,7 +139,7 @@ def _build(sources: int) -> Any:
 _place_bodies = _build(_KERNEL_SOURCES)
 
 
-def _build_eyes(sources: int) -> Any:
+def _build_eyes(sources: int) -> Any:  # noqa: ANN401 - numba's
     """Return the kernel of the processor that places sensors; ``sources`` is part of the name of its file."""
 
     def place_eyes(flat: Rows, parent: I32, relative: F64, poses: F64) -> None:  # pragma: no cover - compiled
