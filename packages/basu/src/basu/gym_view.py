@@ -126,8 +126,9 @@ def put_view(
     """Write the observation of one vehicle; ``away_m`` (OTHERS,) is room to work in."""
     cos, sin = math.cos(ego.yaw_rad[k]), math.sin(ego.yaw_rad[k])
     x_m, y_m, s_m = ego.x_m[k], ego.y_m[k], places.s_m[k]
-    put_ego(k, route, ego, places, cos, sin, found.ego)
     piece, last = piece_at(s_m, route.s_m), len(route.s_m) - 2
+    heading = turned(ego.yaw_rad[k] - between(s_m, piece, route.s_m, route.yaw_rad))
+    put_ego(k, ego, places, heading, cos, sin, found.ego)
     for point in range(PREVIEW_POINTS):
         at_m = s_m + PREVIEW_M * (point + 1)
         while piece < last and route.s_m[piece + 1] <= at_m:
@@ -148,11 +149,9 @@ def put_view(
     found.stop_sign[k, 1] = nearest_m if there else 0.0
 
 
-def put_ego(k: int, route: RouteColumns, ego: EgoRows, places: Places, cos: float, sin: float, found: F32) -> None:
-    """Write the row of the vehicle itself; ``cos`` and ``sin`` are of its yaw."""
+def put_ego(k: int, ego: EgoRows, places: Places, heading: float, cos: float, sin: float, found: F32) -> None:
+    """Write the row of the vehicle itself: its ``heading`` is against the route, ``cos`` and ``sin`` are of its yaw."""
     vx_mps, vy_mps, vz_mps = ego.velocity_x_mps[k], ego.velocity_y_mps[k], ego.velocity_z_mps[k]
-    s_m = places.s_m[k]
-    heading = turned(ego.yaw_rad[k] - between(s_m, piece_at(s_m, route.s_m), route.s_m, route.yaw_rad))
     forward_mps2 = ego.acceleration_x_mps2[k] * cos + ego.acceleration_y_mps2[k] * sin
     found[k, 0] = bounded(math.sqrt(vx_mps**2 + vy_mps**2 + vz_mps**2), FASTEST_MPS)
     found[k, 1] = bounded(forward_mps2, HARDEST_MPS2)
