@@ -79,9 +79,9 @@ def bones() -> Bones:
     names = [all_bones.names[row] for row in rows]
     joint, ahead, sign = np.full(len(rows), -1, np.int32), np.zeros(len(rows)), np.ones(len(rows))
     for number, name in enumerate(all_bones.gait_deg):
-        for side, share in (("R", 0.0), ("L", 0.5)):
+        for side, before in (("R", 0.0), ("L", 0.5)):
             row = names.index(f"crl_{name}__{side}")
-            joint[row], ahead[row], sign[row] = number, share, -1.0 if name == "leg" else 1.0
+            joint[row], ahead[row], sign[row] = number, before, -1.0 if name == "leg" else 1.0
     share, angles_deg = all_bones.gait_share, np.array(list(all_bones.gait_deg.values()))
     foot_rows = [names.index(name) for name in feet]
     return Bones(
@@ -150,9 +150,9 @@ def _bend_deg(share: float, shares: F64, angles_deg: F64) -> float:  # pragma: n
     while at + 2 < len(shares) and shares[at + 1] <= share:
         at += 1
     if shares[at] == share:
-        return angles_deg[at]
+        return float(angles_deg[at])
     slope = (angles_deg[at + 1] - angles_deg[at]) / (shares[at + 1] - shares[at])
-    return slope * (share - shares[at]) + angles_deg[at]
+    return float(slope * (share - shares[at]) + angles_deg[at])
 
 
 @part
@@ -240,7 +240,8 @@ def vehicle_frames(hubs_m: F64, steer_rad: F64, rolled_rad: F64) -> F64:
     ``rolled_rad`` (N, 4) forward. Rows of wheels that a two-wheeler lacks count for nothing.
     """
     frames: F64 = np.empty((len(hubs_m), len(VEHICLE_FRAMES), 3, 4))
-    _put_all_wheels(*(np.ascontiguousarray(each, np.float64) for each in (hubs_m, steer_rad, rolled_rad)), frames)
+    hubs_m, steer_rad, rolled_rad = (np.ascontiguousarray(each, np.float64) for each in (hubs_m, steer_rad, rolled_rad))
+    _put_all_wheels(hubs_m, steer_rad, rolled_rad, frames)
     return frames
 
 
@@ -256,9 +257,8 @@ def _put_all_bones(
 def walker_frames(stature_m: F64, walked_m: F64, speed_mps: F64) -> F64:
     """Return ``WALKER_FRAMES`` (N, 14, 3, 4) of walkers, all columns (N,)."""
     frames: F64 = np.empty((len(stature_m), len(WALKER_FRAMES), 3, 4))
-    _put_all_bones(
-        *(np.ascontiguousarray(each, np.float64) for each in (stature_m, walked_m, speed_mps)), bones(), frames
-    )
+    columns = [np.ascontiguousarray(each, np.float64) for each in (stature_m, walked_m, speed_mps)]
+    _put_all_bones(columns[0], columns[1], columns[2], bones(), frames)
     return frames
 
 
