@@ -148,7 +148,7 @@ class RouteAhead:
             np.ascontiguousarray(route.s_m),
             np.ascontiguousarray(route.points_m[:, 0]),
             np.ascontiguousarray(route.points_m[:, 1]),
-            np.unwrap(route.yaw_rad),
+            np.unwrap(route.yaw_rad).astype(np.float64),
             self.signs_m,
             np.array([vehicle.front_m, (vehicle.front_m + vehicle.rear_m) / 2.0]),
         )

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from basu.conditions import STEP_S
-from basu.metrics import delays, ending, path_following, speeding, stop_signs, validity
+from basu.metrics import delays, ending, path_following, scoring, speeding, stop_signs, validity
 from basu.routing import planned_route
 from linden.compiled import fingerprint, kept_part, part
 
@@ -47,7 +47,7 @@ DRIVE = np.dtype(
 EPISODE = np.dtype([("is_open", "?"), ("first", "i8"), ("end", "i8"), ("pieces", "i8"), ("gained_m", "f8")], align=True)
 """An episode of speeding, as `basu.metrics.speeding.EpisodeFinder` has it."""
 
-_MODULES = (delays, ending, path_following, planned_route, speeding, stop_signs, validity)
+_MODULES = (delays, ending, path_following, planned_route, scoring, speeding, stop_signs, validity)
 SOURCES = fingerprint(Path(__file__), *(Path(str(module.__file__)) for module in _MODULES))
 
 
@@ -72,7 +72,7 @@ _stops_at = parts_of(stop_signs, "in_zone", "stops_at")
 _exceeds = part(speeding.exceeds)
 _is_whole = part(speeding.is_whole)
 _lasts = part(speeding.lasts)
-_BLOCKED_MPS, _TOLERANCE_MPS = delays.BLOCKED_MPS, speeding.TOLERANCE_MPS
+_BLOCKED_MPS, _TOLERANCE_MPS = delays.BLOCKED_MPS, scoring.TOLERANCE_MPS
 
 
 def begun(s_m: F64, limit_s: F64) -> Any:  # noqa: ANN401 - an array of records

@@ -55,7 +55,8 @@ def observed(
     """Return the observations of E vehicles; at most ``threads`` work, 0 being all processors."""
     found = empty_views(len(ego.x_m))
     ego = EgoRows(*map(np.ascontiguousarray, ego))
-    places, others = Places(*map(np.ascontiguousarray, places)), Others(*map(np.ascontiguousarray, others))
+    places = Places._make(np.ascontiguousarray(column) for column in places)
+    others = Others._make(np.ascontiguousarray(column) for column in others)
 
     def work(start: int, stop: int) -> None:
         _put_views(start, stop, route, ego, places, others, found)
