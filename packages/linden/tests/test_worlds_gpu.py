@@ -36,6 +36,17 @@ def test_the_kernels_of_the_gpu_step_worlds_as_the_processor_does(where: tuple[s
     assert said[2] == "frames [6, 0, 1]"
 
 
+def test_the_kernels_of_the_gpu_place_parts_and_sensors_as_the_processor_does() -> None:
+    program = TESTS / "fakes" / "world_parts_in_python.py"
+    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(TESTS)}
+    done = subprocess.run(
+        [sys.executable, str(program)], env=environment, capture_output=True, text=True, check=False, timeout=200.0
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split()[0] == "parts", done.stdout
+    assert int(done.stdout.split()[1]) > 50
+
+
 def test_a_device_that_is_not_there_gets_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "linden.worlds_gpu", None)
     with pytest.raises(UserError, match=r"device='cuda' needs the extra gpu: pip install 'linden\[gpu\]'"):

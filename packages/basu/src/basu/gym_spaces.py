@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import carla
 import gymnasium
@@ -12,6 +11,21 @@ import numpy as np
 
 from basu.conditions import STEP_S
 from basu.errors import UserError
+from basu.gym_view import (
+    FARTHEST_M,
+    FASTEST_MPS,
+    FASTEST_TURN_RADPS,
+    HARDEST_MPS2,
+    OTHERS,
+    PREVIEW_POINTS,
+    TURN_RAD,
+    EgoRows,
+    Others,
+    Places,
+    RouteColumns,
+    Views,
+    put_view,
+)
 from basu.managers.observations import vehicle_of
 from basu.metrics.passengers.felt import STEP_MPS2
 from basu.metrics.stop_signs import stops_at
@@ -32,11 +46,6 @@ if TYPE_CHECKING:
 JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
 TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
 FAILED = frozenset({Status.ROUTE_DEVIATION, Status.ROUTE_BLOCKED})
-
-PREVIEW_POINTS, PREVIEW_M = 10, 5.0  # of the route ahead, and between them
-OTHERS = 8  # road users in an observation
-FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS = 40.0, 20.0, 4.0  # bounds of the boxes, beyond any shuttle's
-FARTHEST_M = 60.0  # likewise, of places
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,44 +127,9 @@ class DriversView:
         rows = EgoRows(*(np.array([getattr(ego, name)]) for name in EgoRows._fields))
         s_m, table = np.array([progress.s_m]), np.array(others, np.float64).reshape(1, -1, 6)
         self._stopped |= stops_at(self._ahead.to_signs_m(s_m), rows.speed_mps[:, None], in_lane)
-        many = self._ahead.observed(
-            rows,
-            s_m,
-            np.array([progress.lateral_m]),
-            np.array([limit_mps]),
-            table,
-            np.ones(table.shape[:2], np.bool_),
-            self._stopped,
-        )
+        places = Places(s_m, np.array([progress.lateral_m]), np.array([limit_mps]), self._stopped)
+        many = self._ahead.observed(rows, places, Others(table, np.ones(table.shape[:2], np.bool_)))
         return {name: values[0] for name, values in many.items()}
-
-
-class EgoRows(NamedTuple):
-    """The motion of E vehicles under test: fields of `VehicleMotion`, each an array (E,)."""
-
-    x_m: NDArray[np.float64]
-    y_m: NDArray[np.float64]
-    yaw_rad: NDArray[np.float64]
-    velocity_x_mps: NDArray[np.float64]
-    velocity_y_mps: NDArray[np.float64]
-    velocity_z_mps: NDArray[np.float64]
-    acceleration_x_mps2: NDArray[np.float64]
-    acceleration_y_mps2: NDArray[np.float64]
-    angular_velocity_z_radps: NDArray[np.float64]
-
-    @property
-    def speed_mps(self) -> NDArray[np.float64]:
-        """(E,) speeds over ground."""
-        speed_mps: NDArray[np.float64] = np.sqrt(
-            self.velocity_x_mps**2 + self.velocity_y_mps**2 + self.velocity_z_mps**2
-        )
-        return speed_mps
-
-    @property
-    def push_mps2(self) -> NDArray[np.float64]:
-        """(E,) horizontal accelerations."""
-        push_mps2: NDArray[np.float64] = np.sqrt(self.acceleration_x_mps2**2 + self.acceleration_y_mps2**2)
-        return push_mps2
 
 
 class RouteAhead:
@@ -163,114 +137,39 @@ class RouteAhead:
 
     Attributes:
         signs_m: (S,) places of the lines of the stop signs along the route.
+        columns: the route as `basu.gym_view.put_view` reads it.
     """
 
     def __init__(self, route: Route, vehicle: Vehicle) -> None:
         """Take the route, and the box of the vehicles."""
         self.signs_m = np.array([control.s_m for control in route.controls if control.kind is ControlKind.STOP_SIGN])
-        self._front_m, self._half_m = vehicle.front_m, (vehicle.front_m + vehicle.rear_m) / 2.0
-        self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
-        self._yaw_rad = np.unwrap(route.yaw_rad)
-        self._ahead_m = PREVIEW_M * np.arange(1, PREVIEW_POINTS + 1)
-        self._boxes = _boxes()
+        self._front_m = vehicle.front_m
+        self.columns = RouteColumns(
+            np.ascontiguousarray(route.s_m),
+            np.ascontiguousarray(route.points_m[:, 0]),
+            np.ascontiguousarray(route.points_m[:, 1]),
+            np.unwrap(route.yaw_rad).astype(np.float64),
+            self.signs_m,
+            np.array([vehicle.front_m, (vehicle.front_m + vehicle.rear_m) / 2.0]),
+        )
 
-    def observed(
-        self,
-        ego: EgoRows,
-        s_m: NDArray[np.float64],
-        lateral_m: NDArray[np.float64],
-        limit_mps: NDArray[np.float64],
-        others: NDArray[np.float64],
-        is_there: NDArray[np.bool_],
-        stopped: NDArray[np.bool_],
-    ) -> dict[str, NDArray[np.float32]]:
-        """Return the observations of E vehicles, each array with E as its first axis.
-
-        Args:
-            ego: their motion.
-            s_m: (E,) places along the route.
-            lateral_m: (E,) offsets from it, positive to the right.
-            limit_mps: (E,) what is posted to them; 0 for none.
-            others: (E, K, 6) x, y, z, yaw, velocity x and y of the road users near each, CARLA's frame.
-            is_there: (E, K) whether a row of ``others`` counts.
-            stopped: (E, S) whether each has stopped at each sign until now, by `stops_at`.
-        """
-        cos, sin = np.cos(ego.yaw_rad), np.sin(ego.yaw_rad)
-        at_m = s_m[:, None] + self._ahead_m
-        x_m, y_m = (np.interp(at_m, self._s_m, self._xy_m[:, axis]) for axis in (0, 1))
-        heading = _turned(ego.yaw_rad - np.interp(s_m, self._s_m, self._yaw_rad))
-        forward_mps2 = ego.acceleration_x_mps2 * cos + ego.acceleration_y_mps2 * sin
-        state = (ego.speed_mps, forward_mps2, ego.angular_velocity_z_radps, lateral_m, heading, limit_mps)
-        found = {
-            "ego": np.stack(state, axis=-1),
-            "route": _in_frame(x_m, y_m, ego, cos, sin),
-            "others": self._others(ego, cos, sin, others, is_there),
-            "stop_sign": self._next_sign(s_m, stopped),
-        }
-        return {name: _clipped(values, self._boxes[name]) for name, values in found.items()}
+    def observed(self, ego: EgoRows, places: Places, others: Others) -> dict[str, NDArray[np.float32]]:
+        """Return the observations of E vehicles from their motion, their places and the road users near each."""
+        found, away_m = empty_views(len(ego.x_m)), np.empty(OTHERS)
+        for k in range(len(ego.x_m)):
+            put_view(k, self.columns, ego, places, others, away_m, found)
+        return found._asdict()
 
     def to_signs_m(self, s_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return (E, S) the way from the front bumpers of vehicles at ``s_m`` to the lines, negative beyond them."""
         ahead_m: NDArray[np.float64] = self.signs_m - (s_m[:, None] + self._front_m)
         return ahead_m
 
-    def _next_sign(self, s_m: NDArray[np.float64], stopped: NDArray[np.bool_]) -> NDArray[np.float64]:
-        """Return (E, 2) 1 and the way to the next line at which the vehicle has to stop; zeros where none is near."""
-        if not len(self.signs_m):
-            return np.zeros((len(s_m), 2))
-        ahead_m = self.to_signs_m(s_m)
-        due = ~stopped & (ahead_m >= -self._half_m) & (ahead_m <= FARTHEST_M)
-        nearest_m = np.where(due, ahead_m, np.inf).min(axis=1)
-        there = np.isfinite(nearest_m)
-        return np.stack([there, np.where(there, nearest_m, 0.0)], axis=-1)
 
-    @staticmethod
-    def _others(
-        ego: EgoRows,
-        cos: NDArray[np.float64],
-        sin: NDArray[np.float64],
-        others: NDArray[np.float64],
-        is_there: NDArray[np.bool_],
-    ) -> NDArray[np.float64]:
-        """Return (E, 8, 6) the nearest road users of each vehicle."""
-        table = np.zeros((len(cos), OTHERS, 6))
-        kept = min(OTHERS, others.shape[1])
-        if not is_there.any():
-            return table
-        place = _in_frame(others[..., 0], others[..., 1], ego, cos, sin)
-        away_m = np.where(is_there, np.hypot(place[..., 0], place[..., 1]), np.inf)
-        velocity = np.stack(
-            [
-                others[..., 4] * cos[:, None] + others[..., 5] * sin[:, None],
-                others[..., 5] * cos[:, None] - others[..., 4] * sin[:, None],
-            ],
-            axis=-1,
-        )
-        turned = _turned(others[..., 3] - ego.yaw_rad[:, None])[..., None]
-        rows = np.concatenate([np.ones_like(turned), place, turned, velocity], axis=-1)
-        rows[~is_there] = 0.0
-        nearest = np.argsort(away_m, axis=1, kind="stable")[:, :kept]
-        table[:, :kept] = np.take_along_axis(rows, nearest[..., None], axis=1)
-        return table
-
-
-def _in_frame(
-    x_m: NDArray[np.float64],
-    y_m: NDArray[np.float64],
-    ego: EgoRows,
-    cos: NDArray[np.float64],
-    sin: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Return places (E, K) as (E, K, 2) in the vehicles' frames: forward, right."""
-    to_x_m, to_y_m = x_m - ego.x_m[:, None], y_m - ego.y_m[:, None]
-    cos, sin = cos[:, None], sin[:, None]
-    return np.stack([to_x_m * cos + to_y_m * sin, to_y_m * cos - to_x_m * sin], axis=-1)
-
-
-def _turned(angle_rad: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return angles within -pi..pi."""
-    turned: NDArray[np.float64] = np.remainder(angle_rad + math.pi, math.tau) - math.pi
-    return turned
+def empty_views(count: int) -> Views:
+    """Return room for the observations of so many vehicles."""
+    shapes = (6,), (PREVIEW_POINTS, 2), (OTHERS, 6), (2,)
+    return Views(*(np.empty((count, *shape), np.float32) for shape in shapes))
 
 
 def control_from(action: ArrayLike) -> carla.VehicleControl:
@@ -325,15 +224,9 @@ def observation_space() -> gymnasium.spaces.Dict:
     return gymnasium.spaces.Dict({**_boxes()})
 
 
-def _clipped(values: NDArray[np.float64], box: gymnasium.spaces.Box) -> NDArray[np.float32]:
-    """The values within the bounds of their box."""
-    clipped: NDArray[np.float32] = np.clip(values.astype(np.float32), box.low, box.high)
-    return clipped
-
-
 def _boxes() -> dict[str, gymnasium.spaces.Box]:
     """The boxes that `basu.gym` describes."""
-    turn, far = math.pi + 1e-3, FARTHEST_M
+    turn, far = TURN_RAD, FARTHEST_M
     ego = [FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS, far, turn, FASTEST_MPS]
     other = [1.0, far, far, turn, FASTEST_MPS, FASTEST_MPS]
     return {

@@ -10,16 +10,15 @@ from basu.conditions import STEP_S
 from basu.metrics.collisions import is_separate
 from basu.metrics.delays import SLOWEST_MPS, time_limit_s
 from basu.metrics.ending import GOES_ON
-from basu.metrics.scoring import TOLERANCE_MPS
-from basu.metrics.speeding import exceeds, holding_mps, is_whole, lasts
-from basu.metrics.stop_signs import stops_at
+from basu.metrics.speeding import holding_mps
 from basu.metrics.validity import PlannedLanes, widths_m
-from linden_gym.following import begun, judge, locate
+from linden_gym.following import EPISODE, begun, judge, locate, pass_signs, watch_speed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.gym_spaces import EgoRows, RouteAhead
+    from basu.gym_spaces import RouteAhead
+    from basu.gym_view import EgoRows
     from basu.records.history import Vehicle
     from basu.routing import Route
     from linden_gym.lane_field import LaneField
@@ -29,9 +28,6 @@ LONG_AGO = -(10**9)
 
 SCENERY_KINDS = 256
 """Parties before the bodies in slots: the kinds of scenery, each of which counts as one."""
-
-EPISODE = np.dtype([("is_open", "?"), ("first", "i8"), ("end", "i8"), ("pieces", "i8"), ("gained_m", "f8")])
-"""An episode of speeding, as `basu.metrics.speeding.EpisodeFinder` has it."""
 
 
 class Drives:
@@ -144,33 +140,18 @@ class Drives:
 
     def _signs_run(self, rows: NDArray[np.int64], speed_mps: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return (K,) how many stop signs the vehicles pass in the frame without having stopped."""
-        drives = self.table[rows]
-        ahead_m = self._ahead.to_signs_m(drives["s_m"])
-        stopped = self.stopped[rows] | stops_at(ahead_m, speed_mps[:, None], drives["in_lane"][:, None])
-        beyond = (drives["s_m"] + self._middle_m)[:, None] > self._ahead.signs_m
-        passes = beyond & ~self._passed[rows] & (drives["tick"] > 0)[:, None]
-        self.stopped[rows] = stopped
-        self._passed[rows] |= beyond
-        run: NDArray[np.int64] = (passes & ~stopped).sum(axis=1)
+        run = np.zeros(len(rows), np.int64)
+        front_m, middle_m = self._ahead.columns.box_m[0], self._middle_m
+        signs_m, stopped, passed = self._ahead.signs_m, self.stopped, self._passed
+        pass_signs(self.table, rows, signs_m, front_m, middle_m, speed_mps, stopped, passed, run)
         return run
 
     def _speeding_until_now(
         self, rows: NDArray[np.int64], speed_mps: NDArray[np.float64], posted_mps: NDArray[np.float64]
     ) -> NDArray[np.int64]:
         """Return (K,) the infractions of episodes that go on; those of ended ones are settled."""
-        drives, now = self.table[rows], self._speeding[rows]
-        limit_mps = holding_mps(self._route.speed_limit_mps[drives["at"]], posted_mps, drives["off_edge_m"] == 0.0)
-        belongs = exceeds(speed_mps, limit_mps, TOLERANCE_MPS, now["is_open"])
-        ends = now["is_open"] & ~belongs
-        self._settled[rows] += np.where(ends & lasts(now["first"], now["end"], STEP_S), now["pieces"], 0)
-        begins = belongs & ~now["is_open"]
-        another = belongs & (begins | is_whole(now["gained_m"]))
-        now["first"] = np.where(begins, drives["tick"], now["first"])
-        now["pieces"] = np.where(belongs, np.where(begins, 0, now["pieces"]) + another, 0)
-        gained_m = np.where(another, 0.0, now["gained_m"])
-        excess_mps = np.where(belongs, speed_mps - limit_mps, 0.0)
-        now["gained_m"] = np.where(belongs, gained_m + excess_mps * STEP_S, 0.0)
-        now["end"] = np.where(belongs, drives["tick"] + 1, now["end"])
-        now["is_open"] = belongs
-        self._speeding[rows] = now
-        return np.where(belongs & lasts(now["first"], now["end"], STEP_S), now["pieces"], 0)
+        at, in_lane = self.table["at"][rows], self.table["off_edge_m"][rows] == 0.0
+        limit_mps = holding_mps(self._route.speed_limit_mps[at], posted_mps, in_lane)
+        pending = np.zeros(len(rows), np.int64)
+        watch_speed(self.table, rows, self._speeding, speed_mps, limit_mps, self._settled, pending)
+        return pending

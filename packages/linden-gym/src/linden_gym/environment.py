@@ -21,13 +21,13 @@ from basu.gym_spaces import (
     FAILED,
     JUDGED_TICKS,
     TRUNCATED,
-    EgoRows,
     Reward,
     RouteAhead,
     action_space,
     controls_from,
     observation_space,
 )
+from basu.gym_view import EgoRows, Others, Places
 from basu.managers.observations import OVERHEAD_M, SMALLEST_M
 from basu.metrics.ending import ARRIVED, GOES_ON, STATUS_OF
 from basu.records.history import Vehicle
@@ -38,6 +38,7 @@ from linden.physics.state import NO_BODY, PROP
 from linden.worlds import Worlds
 from linden_gym.drives import Drives
 from linden_gym.lane_field import LaneField
+from linden_gym.observing import observed
 from linden_gym.starts import Starts, settled
 
 if TYPE_CHECKING:
@@ -118,7 +119,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._reward = Reward() if reward is None else reward
         box = self._box()
-        self._ahead = RouteAhead(self.route, box)
+        self._ahead, self._threads = RouteAhead(self.route, box), threads
         lanes = LaneField(carla_map, self.worlds.map, self.route.points_m)
         self._drives = Drives(num_envs, self.route, self._ahead, lanes, box)
         self._all: NDArray[np.int64] = np.arange(num_envs, dtype=np.int64)
@@ -304,25 +305,18 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
     def _observed(self, rows: NDArray[np.int64]) -> Observations:
         """Return the observations of environments (K,)."""
         drives, ego = self._drives.table[rows], self._ego(rows)
-        others, is_there = self._others(rows, ego)
-        return self._ahead.observed(
-            ego,
-            drives["s_m"],
-            drives["lateral_m"],
-            self._posted_mps(rows),
-            others,
-            is_there,
-            self._drives.stopped[rows],
-        )
+        others = self._others(rows, ego)
+        places = Places(drives["s_m"], drives["lateral_m"], self._posted_mps(rows), self._drives.stopped[rows])
+        return observed(self._ahead.columns, ego, places, others, self._threads)
 
-    def _others(self, rows: NDArray[np.int64], ego: EgoRows) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Return the bodies beside the vehicle as rows of `RouteAhead.observed`, and which of them count.
+    def _others(self, rows: NDArray[np.int64], ego: EgoRows) -> Others:
+        """Return the bodies beside the vehicle, and which of them count.
 
         The place is that of the middle of the box, as in `basu.managers.observations`.
         """
         state = self.worlds.state
         if state.shape[1] == EGO + 1:
-            return np.zeros((len(rows), 0, 6)), np.zeros((len(rows), 0), np.bool_)
+            return Others(np.zeros((len(rows), 0, 6)), np.zeros((len(rows), 0), np.bool_))
         body = state[rows, EGO + 1 :]
         position_m, velocity_mps = _single(body["position"]), _single(body["velocity"])
         yaw_rad = _yaw_rad(body["rotation"][..., 1])
@@ -343,7 +337,7 @@ class WorldsVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
             ],
             axis=-1,
         )
-        return table, is_there
+        return Others(table, is_there)
 
 
 def _single(values: NDArray[np.float64]) -> NDArray[np.float64]:

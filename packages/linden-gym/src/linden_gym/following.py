@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from basu.conditions import STEP_S
-from basu.metrics import delays, ending, path_following, validity
+from basu.metrics import delays, ending, path_following, scoring, speeding, stop_signs, validity
 from basu.routing import planned_route
 from linden.compiled import fingerprint, kept_part, part
 
@@ -43,10 +44,20 @@ DRIVE = np.dtype(
     align=True,
 )
 
-SOURCES = fingerprint(
-    Path(__file__),
-    *(Path(str(module.__file__)) for module in (delays, ending, path_following, planned_route, validity)),
-)
+EPISODE = np.dtype([("is_open", "?"), ("first", "i8"), ("end", "i8"), ("pieces", "i8"), ("gained_m", "f8")], align=True)
+"""An episode of speeding, as `basu.metrics.speeding.EpisodeFinder` has it."""
+
+_MODULES = (delays, ending, path_following, planned_route, scoring, speeding, stop_signs, validity)
+SOURCES = fingerprint(Path(__file__), *(Path(str(module.__file__)) for module in _MODULES))
+
+
+def parts_of(module: ModuleType, *names: str) -> Any:  # noqa: ANN401 - numba's
+    """Compile functions of a module, each of which calls only those before it, and return the last of them."""
+    known = dict(vars(module))
+    for name in names:
+        known[name] = part(FunctionType(known[name].__code__, known, name))
+    return known[names[-1]]
+
 
 _search_window = part(planned_route.search_window)
 _foot_on_segment = part(planned_route.foot_on_segment)
@@ -57,7 +68,11 @@ _is_beside = part(validity.is_beside)
 _followed = part(validity.followed)
 _has_arrived = part(path_following.has_arrived)
 _ending_of = part(ending.ending_of)
-_BLOCKED_MPS = delays.BLOCKED_MPS
+_stops_at = parts_of(stop_signs, "in_zone", "stops_at")
+_exceeds = part(speeding.exceeds)
+_is_whole = part(speeding.is_whole)
+_lasts = part(speeding.lasts)
+_BLOCKED_MPS, _TOLERANCE_MPS = delays.BLOCKED_MPS, scoring.TOLERANCE_MPS
 
 
 def begun(s_m: F64, limit_s: F64) -> Any:  # noqa: ANN401 - an array of records
@@ -158,3 +173,65 @@ def judge(
         arrived = valid and _has_arrived(left_m, speed_mps[k], 0.0, 0.0)
         still_s, t_s = (drive.tick - drive.moved_tick) * STEP_S, drive.tick * STEP_S
         drive.ending = _ending_of(arrived, drive.gaps, drive.distance_m, still_s, t_s, drive.limit_s, math.inf)
+
+
+@kept_part(SOURCES)
+def pass_signs(
+    drives: Any,  # noqa: ANN401 - an array of records
+    rows: NDArray[np.int64],
+    signs_m: F64,
+    front_m: float,
+    middle_m: float,
+    speed_mps: F64,
+    stopped: NDArray[np.bool_],
+    passed: NDArray[np.bool_],
+    run: NDArray[np.int64],
+) -> None:  # pragma: no cover - compiled
+    """Note in ``stopped`` and ``passed`` (W, S) where vehicles (K,) stop and pass; write how many signs each runs.
+
+    ``front_m`` is from a vehicle's place to its front bumper, ``middle_m`` to the middle of its length.
+    """
+    for k in range(len(rows)):
+        row, drive = rows[k], drives[rows[k]]
+        run[k] = 0
+        for sign in range(len(signs_m)):
+            if _stops_at(signs_m[sign] - (drive.s_m + front_m), speed_mps[k], drive.in_lane):
+                stopped[row, sign] = True
+            if drive.s_m + middle_m > signs_m[sign] and not passed[row, sign]:
+                passed[row, sign] = True
+                run[k] += drive.tick > 0 and not stopped[row, sign]
+
+
+@kept_part(SOURCES)
+def watch_speed(
+    drives: Any,  # noqa: ANN401 - an array of records
+    rows: NDArray[np.int64],
+    episodes: Any,  # noqa: ANN401 - likewise
+    speed_mps: F64,
+    limit_mps: F64,
+    settled: NDArray[np.int64],
+    pending: NDArray[np.int64],
+) -> None:  # pragma: no cover - compiled
+    """Advance the episodes (W,) of EPISODE of vehicles (K,) by a frame; ``limit_mps`` (K,) hold.
+
+    Infractions of episodes that end are added to ``settled`` (W,). Those of episodes that go on are ``pending`` (K,).
+    """
+    for k in range(len(rows)):
+        now, tick = episodes[rows[k]], drives[rows[k]].tick
+        was_open = now.is_open
+        belongs = _exceeds(speed_mps[k], limit_mps[k], _TOLERANCE_MPS, was_open)
+        now.is_open, pending[k] = belongs, 0
+        if not belongs:
+            if was_open and _lasts(now.first, now.end, STEP_S):
+                settled[rows[k]] += now.pieces
+            now.pieces, now.gained_m = 0, 0.0
+            continue
+        if not was_open:
+            now.first, now.pieces = tick, 0
+        if not was_open or _is_whole(now.gained_m):
+            now.pieces += 1
+            now.gained_m = 0.0
+        now.gained_m += (speed_mps[k] - limit_mps[k]) * STEP_S
+        now.end = tick + 1
+        if _lasts(now.first, now.end, STEP_S):
+            pending[k] = now.pieces

@@ -260,10 +260,19 @@ class Worlds:
         self._valid[running] = inside.all(axis=(1, 2))[running]
 
     def _step_on_gpu(self, gpu: "GpuWorlds") -> None:
-        if not gpu.is_current:
-            gpu.upload(self._table, self._first, self._valid, self._frames)
+        self._upload(gpu)
         gpu.step(self.dt_s, self._substeps)
         self._host_is_current, self._contacts = False, None
+
+    def _upload(self, gpu: "GpuWorlds") -> None:
+        """Bring the device up to date with the host."""
+        if not gpu.is_current:
+            gpu.upload(self._table, self._first, self._valid, self._frames)
+
+    def _read_marks(self) -> None:
+        """Bring `valid` and `frames` of the host up to date with the device, but no body."""
+        if self._gpu is not None and not self._host_is_current:
+            self._gpu.download_marks(self._valid, self._frames)
 
     def _read(self) -> None:
         """Bring the arrays of the host up to date with the device."""
@@ -294,6 +303,8 @@ class Worlds:
         if self._gpu is not None and self._gpu.is_current:
             self._keep_contacts()
             self._gpu.reset(chosen)
+            for name in ("alive", "kind"):  # which bodies there are is known without the device
+                self._table.state[name][chosen] = self._first.state[name][chosen]
             self._host_is_current = False
             self._forget_contacts(chosen)
             return
@@ -404,12 +415,17 @@ class Worlds:
         wanted = _numbers("transform (x, y, z, pitch, yaw, roll)", transform, (len(chosen), 6))
         if slot is not None:
             self._rows(slot, chosen)
-        self._read()
-        lost = chosen[~self._valid[chosen]]
+        there = None
+        if self._gpu is not None and not lit:
+            self._upload(self._gpu)
+            there = self._gpu.bodies
+        else:
+            self._read()
+        lost = chosen[~self.valid[chosen]]
         if len(lost):
             raise UserError(f"world {lost[0]} is not valid, since a body of it got lost; reset it or leave it out")
         colours = self.light_colours[chosen] if lit else None
-        return Asked(self._table, chosen, slot, wanted, self.frames[chosen], self.elapsed_s[chosen], colours)
+        return Asked(self._table, chosen, slot, wanted, there, self.frames[chosen], self.elapsed_s[chosen], colours)
 
     # -- what there is -------------------------------------------------------------------------------------------------
 
@@ -429,13 +445,13 @@ class Worlds:
 
         Such a world stands still. On a GPU so does a world with more near pairs than there is room for.
         """
-        self._read()
+        self._read_marks()
         return self._valid
 
     @property
     def frames(self) -> NDArray[np.int64]:
         """(W,) steps since each world was reset."""
-        self._read()
+        self._read_marks()
         return self._frames
 
     def on_device(self, name: str) -> "DeviceColumn":
@@ -450,8 +466,7 @@ class Worlds:
             raise UserError("these worlds are in the memory of the processor; read `state`, or use device='cuda'")
         if name not in (BODY.names or ()):
             raise UserError(f"bodies have no column {name!r}; they have {', '.join(BODY.names or ())}")
-        if not self._gpu.is_current:
-            self._gpu.upload(self._table, self._first, self._valid, self._frames)
+        self._upload(self._gpu)
         return self._gpu.column(name)
 
     def wait(self) -> None:

@@ -22,6 +22,7 @@ from linden.physics.state import BODY, SOURCES, VEHICLE_WORK
 from linden.physics.step import GRAVITY_MPS2, begin_frame, run_frame
 from linden.physics.vehicle.controls import set_controls
 from linden.structured import StructuredArray
+from linden.worlds_parts_gpu import BodiesOnDevice
 
 cuda: Any = numba_cuda
 """What it offers it makes up as it is loaded: nothing of that is typed."""
@@ -239,8 +240,17 @@ class GpuWorlds:
     def download(self, table: BodyTable, valid: NDArray[np.bool_], frames: NDArray[np.int64]) -> None:
         """Copy the worlds back into the tables of the host."""
         self.state.copy_to_host(table.state)
+        self.download_marks(valid, frames)
+
+    def download_marks(self, valid: NDArray[np.bool_], frames: NDArray[np.int64]) -> None:
+        """Copy back which worlds are valid, and their numbers of steps."""
         self.valid.copy_to_host(valid)
         self.frames.copy_to_host(frames)
+
+    @property
+    def bodies(self) -> BodiesOnDevice:
+        """The bodies of all worlds, to be read."""
+        return BodiesOnDevice(self.state, self._table.spec_of, self._table.specs)
 
     def step(self, dt_s: float, substeps: int) -> None:
         """Advance all valid worlds; returns before the device is done."""

@@ -14,12 +14,11 @@ from linden.blueprints.library import packaged
 from linden.errors import Refusal, UserError
 from linden.maps.library import LoadedMap
 from linden.physics.columns import BodyTable
-from linden.physics.state import NO_BODY, VEHICLE, WALKER
+from linden.physics.state import NO_BODY, WALKER
 from linden.protocol.values.actors import ActorDescription, AttributeValue
 from linden.protocol.values.enums import AttributeType
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.scenery.actors.actor_meshes import actor_meshes
-from linden.scenery.actors.posing import walker_frames
 from linden.sensors.camera.cameras import CAMERAS, pixels
 from linden.sensors.camera.labels import depth_m
 from linden.sensors.casting.caster import CPU, Caster, Instances
@@ -30,20 +29,13 @@ from linden.sensors.devices.lidar.firing_pattern import fire, read_fan
 from linden.sensors.devices.lidar.sensor import read_losses, scan
 from linden.sensors.runtime.light_state import LightStateCache
 from linden.sensors.runtime.sensor_scene import SensorScene
-from linden.sensors.runtime.visible_actors import (
-    Motion,
-    PartRows,
-    instances_of,
-    matrices,
-    poses_of_parts,
-    put_vehicles,
-    rigid_frames,
-)
+from linden.sensors.runtime.visible_actors import PartRows
+from linden.sensors.runtime.world_parts import PartsOfBodies, parts_of_bodies, placed_parts, poses_of_eyes
 from linden.sensors.view import Seen, SensorLook
 from linden.simulation.episode import Episode
-from linden.simulation.snapshot_rows import gather_motion
 
 if TYPE_CHECKING:
+    from linden.worlds_parts_gpu import BodiesOnDevice, PartsOnGpu
     from linden.worlds_sensors_gpu import Eyes, GpuSensors
 
 F32 = NDArray[np.float32]
@@ -64,8 +56,6 @@ UNKNOWN = -1
 """In place of a blueprint: of a body that `Worlds.spawn` has not made."""
 
 MOST_BYTES = 4 * 2**30
-_TOGETHER = 64
-"""Worlds: the bodies of so many are gathered at once. More take memory and are no faster."""
 _FEWEST = 8
 """Worlds that a thread takes at least."""
 
@@ -84,6 +74,7 @@ class Asked(NamedTuple):
     chosen: I32
     slot: int | None  # of the body that carries the sensor; None where the sensor stands in the world
     transform: F64  # (K, 6) of the sensor: relative to that body, or in the world; m and degrees
+    there: "BodiesOnDevice | None"  # the bodies on a GPU; the table then tells only which bodies there are
     frames: NDArray[np.int64]  # (K,) steps since each world was reset
     now_s: F64  # (K,)
     colours: U8 | None  # (K, L) of the traffic lights; None where their colour cannot be seen
@@ -101,12 +92,14 @@ class WorldsSensors:
         self._map, self._device = world_map, device
         self._descriptions: list[ActorDescription] = []
         self._parts: PartRows | None = None
+        self._layout: tuple[I32, NDArray[np.bool_], PartsOfBodies] | None = None  # with the worlds and bodies it is of
         self.described: NDArray[np.int16] = np.full((worlds, 1), UNKNOWN, np.int16)
         self.walked_m: F64 = np.zeros((worlds, 0))
         self._base: Seen | None = None
         self._lights = LightStateCache()
         self._casters: list[EmbreeCaster] = []
         self._gpu: GpuSensors | None = None
+        self._placing: PartsOnGpu
 
     # -- what the bodies are -------------------------------------------------------------------------------------------
 
@@ -120,6 +113,7 @@ class WorldsSensors:
             self._descriptions.append(description)
             self._parts = None
         self.described[chosen, slot] = self._descriptions.index(description)
+        self._layout = None
         if description.id.startswith("walker."):
             walked_m = np.zeros(self.described.shape)
             walked_m[:, : self.walked_m.shape[1]] = self.walked_m
@@ -127,7 +121,7 @@ class WorldsSensors:
 
     def forget(self, chosen: I32) -> None:
         """Forget the bodies of worlds (K,)."""
-        self.described[chosen] = UNKNOWN
+        self.described[chosen], self._layout = UNKNOWN, None
         self.begin(chosen)
 
     def begin(self, chosen: I32) -> None:
@@ -222,25 +216,20 @@ class WorldsSensors:
         Raises:
             UserError: a body was not made by `Worlds.spawn`.
         """
-        self._refuse_unknown(asked.table, asked.chosen)
         base, count = self._scene(), len(asked.chosen)
-        self._known_parts()  # by one thread, before several ask for them
+        poses, (parts, bodies) = self._poses(asked).tolist(), self._bodies(asked)
+        begins = parts.begins.tolist()
         lit = [self._lit(base, row) for row in asked.colours] if asked.colours is not None else [base] * count
         spare: list[Caster] = []
 
         def work(start: int, stop: int) -> None:
             caster = base.caster if not (side_by_side and isinstance(base.caster, EmbreeCaster)) else spare.pop()
-            for first in range(start, stop, _TOGETHER):
-                part = slice(first, min(stop, first + _TOGETHER))
-                poses, begins, bodies = self._gathered(asked, part)
-                for row, pose in enumerate(poses.tolist()):
-                    own = slice(begins[row], begins[row + 1])
-                    instances = Instances._make(column[own] for column in bodies)
-                    caster.pose(instances)
-                    seen = lit[first + row]._replace(
-                        caster=caster, instances=instances, now_s=float(asked.now_s[first + row])
-                    )
-                    measure(first + row, seen, Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])))
+            for row in range(start, stop):
+                own, pose = slice(begins[row], begins[row + 1]), poses[row]
+                instances = Instances._make(column[own] for column in bodies)
+                caster.pose(instances)
+                seen = lit[row]._replace(caster=caster, instances=instances, now_s=float(asked.now_s[row]))
+                measure(row, seen, Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])))
             spare.append(caster)
 
         if side_by_side and isinstance(base.caster, EmbreeCaster):
@@ -256,15 +245,17 @@ class WorldsSensors:
         Raises:
             UserError: a body was not made by `Worlds.spawn`.
         """
-        from linden.sensors.casting.warp_worlds import WorldBodies  # noqa: PLC0415 - Warp, which users of a GPU have
+        from linden.sensors.casting.warp_worlds import WorldBodies, WorldEyes  # noqa: PLC0415 - Warp, for a GPU
+        from linden.worlds_parts_gpu import PartsOnGpu  # noqa: PLC0415 - likewise
         from linden.worlds_sensors_gpu import Eyes, GpuSensors  # noqa: PLC0415 - likewise
 
-        self._refuse_unknown(asked.table, asked.chosen)
+        assert asked.there is not None, "worlds on a GPU say where their bodies are"
         if self._gpu is None:
-            self._gpu = GpuSensors(self._scene())
-        poses, begins, parts, rows, places = self._placed(asked, slice(0, len(asked.chosen)))
-        pose, _ = poses_of_parts(parts, places, self._frames(asked.table, rows))
-        return self._gpu, Eyes(matrices(poses).astype(np.float32), WorldBodies(begins, parts.mesh, pose))
+            self._gpu, self._placing = GpuSensors(self._scene()), PartsOnGpu()
+        parts = self._parts_of(asked)
+        poses = self._placing.poses(asked.there, parts, self._walked_of(asked.table))
+        eyes = self._placing.eyes(asked.there, asked.chosen, asked.slot, asked.transform)
+        return self._gpu, Eyes(WorldEyes(*eyes), WorldBodies(parts.begins, parts.mesh, poses))
 
     def _grow_casters(self, caster: EmbreeCaster) -> None:
         """Make a caster for each thread, and the trees of all bodies."""
@@ -288,67 +279,52 @@ class WorldsSensors:
         states = self._lights.of(self._episode)
         return seen._replace(object_lights=states.lights, object_light_colour=states.colour)
 
-    def _gathered(self, asked: Asked, part: slice) -> tuple[F64, I32, Instances]:
-        """Return the poses (K, 6) of sensors in some worlds, and all bodies with where each world's begin (K + 1,)."""
-        poses, begins, parts, rows, places = self._placed(asked, part)
-        bodies = asked.table.state.reshape(-1)
-        motion = Motion(
-            places,
-            bodies["velocity"][rows],
-            bodies["angular_velocity"][rows],
-            (rows % asked.table.state.shape[1] + 1).astype(np.uint32),
-            np.zeros(len(rows), np.uint32),
-        )
-        return poses, begins, instances_of(parts, motion, self._frames(asked.table, rows))
+    def _parts_of(self, asked: Asked) -> PartsOfBodies:
+        """Return the parts of all bodies in worlds (K,); they stay the same until a body comes, goes or changes.
 
-    def _placed(self, asked: Asked, part: slice) -> tuple[F64, I32, PartRows, I32, F64]:
-        """Return where sensors and bodies of some worlds (K,) are.
-
-        The first two are the poses (K, 6) of the sensors and where the parts of each world begin (K + 1,). The parts of
-        all bodies, the flat rows (A,) of the bodies and their poses (A, 3, 4) follow.
+        Raises:
+            UserError: a body was not made by `Worlds.spawn`.
         """
-        table, slot, chosen, transform = asked.table, asked.slot, asked.chosen[part], asked.transform[part]
-        flat, slots = table.state.reshape(-1), table.state.shape[1]
-        alive = table.state["alive"][chosen] & (table.state["kind"][chosen] != NO_BODY)
-        world, own_slot = np.nonzero(alive)
-        rows = (chosen[world] * slots + own_slot).astype(np.int32)
-        poses, relative = np.zeros((len(rows) + len(chosen), 6)), np.zeros((len(rows) + len(chosen), 6))
-        parent, moved_by = np.full(len(poses), -1, np.int32), np.full(len(poses), -1, np.int32)
-        moved_by[: len(rows)] = rows
-        relative[len(rows) :] = poses[len(rows) :] = transform
-        if slot is not None:
-            parent[len(rows) :] = np.flatnonzero(own_slot == slot)
-        gather_motion(
-            len(poses), poses, relative, parent, moved_by, flat["position"], flat["rotation"], flat["velocity"],
-            flat["angular_velocity"], flat["acceleration"], np.zeros((len(poses), 15), np.float32),
-        )  # fmt: skip
-        parts = _parts_of(self._known_parts(), self.described[chosen][alive].astype(np.intp))
-        begins = np.searchsorted(world[parts.actor], np.arange(len(chosen) + 1)).astype(np.int32)
-        return poses[len(rows) :], begins, parts, rows, matrices(poses[: len(rows)])
+        table, chosen = asked.table, asked.chosen
+        there = table.state["alive"][chosen] & (table.state["kind"][chosen] != NO_BODY)
+        if self._layout is not None:
+            known, seen, found = self._layout
+            if np.array_equal(known, chosen) and np.array_equal(seen, there):
+                return found
+        self._refuse_unknown(table, chosen)
+        world, slot = np.nonzero(there)
+        row = (chosen[world] * table.state.shape[1] + slot).astype(np.int32)
+        design = self.described[chosen][there].astype(np.intp)
+        found = parts_of_bodies(self._known_parts(), world, row, design, table.state.shape[1], len(chosen))
+        self._layout = chosen.copy(), there, found
+        return found
+
+    def _poses(self, asked: Asked) -> F64:
+        """Return the poses (K, 6) of the sensors."""
+        if asked.slot is None:
+            return asked.transform
+        flat, slots = asked.table.state.reshape(-1), asked.table.state.shape[1]
+        return poses_of_eyes(flat, asked.chosen * np.int32(slots) + np.int32(asked.slot), asked.transform)
+
+    def _bodies(self, asked: Asked) -> tuple[PartsOfBodies, Instances]:
+        """Return all parts of the bodies in worlds (K,) in their places."""
+        parts, table = self._parts_of(asked), asked.table
+        flat, spec_of = table.state.reshape(-1), table.spec_of.reshape(-1)
+        placed = placed_parts(parts, flat, spec_of, table.specs, self._walked_of(table).reshape(-1))
+        lights = np.zeros(len(parts.mesh), np.uint32)
+        return parts, Instances(parts.mesh, placed.pose, placed.pose, parts.actor_id, parts.paint, lights, *placed[1:])
+
+    def _walked_of(self, table: BodyTable) -> F64:
+        """Return how far (W, S) walkers have walked."""
+        walked_m: F64 = np.zeros(table.state.shape)
+        walked_m[:, : self.walked_m.shape[1]] = self.walked_m
+        return walked_m
 
     def _known_parts(self) -> PartRows:
         """Return the parts of all designs that were spawned."""
         if self._parts is None:
             self._parts = PartRows.of(self._descriptions, actor_meshes())
         return self._parts
-
-    def _frames(self, table: BodyTable, rows: I32) -> F64:
-        """Return the frames (A, 14, 3, 4) of the parts of bodies in flat rows (A,)."""
-        frames, bodies = rigid_frames(len(rows)), table.state.reshape(-1)[rows]
-        vehicles = np.flatnonzero(bodies["kind"] == VEHICLE)
-        if len(vehicles):
-            specs = table.specs[table.spec_of.reshape(-1)[rows[vehicles]]]
-            put_vehicles(frames, vehicles, specs, bodies["wheel_steer"][vehicles], bodies["wheel_turned"][vehicles])
-        walkers = np.flatnonzero(bodies["kind"] == WALKER)
-        if len(walkers):
-            world, slot = np.divmod(rows[walkers], table.state.shape[1])
-            velocity = bodies["velocity"][walkers]
-            frames[walkers] = walker_frames(
-                2.0 * bodies["half_extent"][walkers, 2],
-                self.walked_m[world, slot],
-                np.hypot(velocity[:, 0], velocity[:, 1]),
-            )
-        return frames
 
     def _refuse_unknown(self, table: BodyTable, chosen: I32) -> None:
         slots = min(self.described.shape[1], table.state.shape[1])
@@ -360,16 +336,6 @@ class WorldsSensors:
                 f"the body in slot {where[0][1]} of world {chosen[where[0][0]]} was not made by `spawn`, so it has no "
                 "look; leave that world out, or spawn the body"
             )
-
-
-def _parts_of(designs: PartRows, design: NDArray[np.intp]) -> PartRows:
-    """Return the parts of actors (A,), each of a design, from the parts of all designs."""
-    begins = np.searchsorted(designs.actor, np.arange(design.max(initial=-1) + 2))
-    count = begins[design + 1] - begins[design]
-    actor = np.repeat(np.arange(len(design)), count)
-    behind = np.arange(len(actor)) - np.repeat(np.cumsum(count) - count, count)
-    rows = begins[design][actor] + behind
-    return PartRows(actor, designs.mesh[rows], designs.frame[rows], designs.paint[rows], designs.scale[rows])
 
 
 def _described(blueprint: str, attributes: dict[str, Value]) -> ActorDescription:

@@ -12,7 +12,7 @@ from linden.sensors.camera.pixel_rays import directions, pixel_of_ray
 from linden.sensors.camera.spec import CameraSpec
 from linden.sensors.casting.thread_pool import in_stretches
 from linden.sensors.casting.warp_caster import WarpCaster
-from linden.sensors.casting.warp_worlds import DeviceArray, WorldBodies, WorldHits, WorldsCaster
+from linden.sensors.casting.warp_worlds import DeviceArray, WorldBodies, WorldEyes, WorldHits, WorldsCaster
 from linden.sensors.devices.lidar.firing_pattern import Fan, Fired, fire
 from linden.sensors.devices.lidar.sensor import draw
 from linden.sensors.devices.lidar.sweep import Losses, points_of
@@ -27,7 +27,7 @@ _FEWEST = 8
 class Eyes(NamedTuple):
     """The sensors of K worlds, and the bodies that they may see."""
 
-    pose: F32  # (K, 3, 4) from the frame of each sensor to its world, m
+    at: WorldEyes
     bodies: WorldBodies
 
 
@@ -47,7 +47,7 @@ class GpuSensors:
             made = self._caster.depth_m(hits, towards, pixel, size)
         else:
             made = self._caster.semantic(hits, pixel, size)
-        return made.reshape((len(eyes.pose), spec.height_px, spec.width_px))
+        return made.reshape((eyes.at.place.shape[0], spec.height_px, spec.width_px))
 
     def scans(
         self, fan: Fan, losses: Losses, start_deg: float, interval_s: float, eyes: Eyes
@@ -64,7 +64,7 @@ class GpuSensors:
             )
         fired, towards = _rays(fan, start_deg, interval_s)
         hits = self._cast(eyes, towards, fan.range_m)
-        shape = len(eyes.pose), len(fired.up), len(fired.sine)
+        shape = eyes.at.place.shape[0], len(fired.up), len(fired.sine)
         points, returned = self._caster.points(hits, towards, losses.attenuation_per_m)
         return points.reshape(shape), returned.reshape(shape)
 
@@ -85,7 +85,7 @@ class GpuSensors:
         in_stretches(len(numbers), work, multiple=1, fewest=_FEWEST)
 
     def _cast(self, eyes: Eyes, towards: F32, farthest_m: float) -> WorldHits:
-        return self._caster.cast(eyes.bodies, eyes.pose, towards, farthest_m)
+        return self._caster.cast(eyes.bodies, eyes.at, towards, farthest_m)
 
 
 @lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import kernel
+from linden.compiled import kernel, part
 from linden.maps.ground import Ground, surface_under
 from linden.protocol.values.snapshot import VEHICLE_ROW
 
@@ -21,41 +21,54 @@ MOTION_OFFSET = 5
 """Byte at which location, rotation, velocity, angular velocity and acceleration begin in a row; see values.snapshot."""
 
 
-@kernel
-def _axes(pitch_deg: float, yaw_deg: float, roll_deg: float) -> F64:  # pragma: no cover - compiled
-    """Return the (3, 3) matrix of ``linden.geometry.rotation_matrix``."""
-    sp, cp = math.sin(math.radians(pitch_deg)), math.cos(math.radians(pitch_deg))
-    sy, cy = math.sin(math.radians(yaw_deg)), math.cos(math.radians(yaw_deg))
-    sr, cr = math.sin(math.radians(roll_deg)), math.cos(math.radians(roll_deg))
-    axes = np.empty((3, 3))
-    axes[0, 0], axes[0, 1], axes[0, 2] = cp * cy, cy * sp * sr - sy * cr, -cy * sp * cr - sy * sr
-    axes[1, 0], axes[1, 1], axes[1, 2] = cp * sy, sy * sp * sr + cy * cr, -sy * sp * cr + cy * sr
-    axes[2, 0], axes[2, 1], axes[2, 2] = sp, -cp * sr, cp * cr
-    return axes
+@part
+def _axes(pose: F64) -> tuple[tuple[float, float, float], ...]:  # pragma: no cover - compiled
+    """Return the rows of the matrix of ``linden.geometry.rotation_matrix`` for a pose (6,); angles in degrees."""
+    sp, cp = math.sin(math.radians(pose[3])), math.cos(math.radians(pose[3]))
+    sy, cy = math.sin(math.radians(pose[4])), math.cos(math.radians(pose[4]))
+    sr, cr = math.sin(math.radians(pose[5])), math.cos(math.radians(pose[5]))
+    return (
+        (cp * cy, cy * sp * sr - sy * cr, -cy * sp * cr - sy * sr),
+        (cp * sy, sy * sp * sr + cy * cr, -sy * sp * cr + cy * sr),
+        (sp, -cp * sr, cp * cr),
+    )
 
 
-@kernel
-def _follow(parent: F64, relative: F64, pose: F64) -> None:  # pragma: no cover - compiled
+@part
+def _turned(row: tuple[float, ...], axes: tuple[tuple[float, ...], ...], column: int) -> float:  # pragma: no cover
+    return 0.0 + row[0] * axes[0][column] + row[1] * axes[1][column] + row[2] * axes[2][column]
+
+
+@part
+def follow(parent: F64, relative: F64, pose: F64) -> None:  # pragma: no cover - compiled
     """Write into ``pose`` (6,) where a child with ``relative`` (6,) to its ``parent`` (6,) is; m and degrees."""
-    outer = _axes(parent[3], parent[4], parent[5])
-    inner = _axes(relative[3], relative[4], relative[5])
-    turn = np.zeros((3, 3))
-    for i in range(3):
-        for j in range(3):
-            for k in range(3):
-                turn[i, j] += outer[i, k] * inner[k, j]
+    outer, inner = _axes(parent), _axes(relative)
     for axis in range(3):
-        pose[axis] = (
-            parent[axis] + outer[axis, 0] * relative[0] + outer[axis, 1] * relative[1] + outer[axis, 2] * relative[2]
-        )
-    sine = min(1.0, max(-1.0, turn[2, 0]))
+        own = outer[axis]
+        pose[axis] = parent[axis] + own[0] * relative[0] + own[1] * relative[1] + own[2] * relative[2]
+    x_axis, y_axis, up = outer[0], outer[1], outer[2]
+    sine = min(1.0, max(-1.0, _turned(up, inner, 0)))
     pose[3] = math.degrees(math.asin(sine))
     if abs(sine) > 1.0 - 1e-12:  # straight up or down: yaw and roll turn about one axis, so all of it is roll
         pose[4] = 0.0
-        pose[5] = math.degrees(math.atan2(math.copysign(1.0, sine) * turn[0, 1], turn[1, 1]))
+        pose[5] = math.degrees(
+            math.atan2(math.copysign(1.0, sine) * _turned(x_axis, inner, 1), _turned(y_axis, inner, 1))
+        )
     else:
-        pose[4] = math.degrees(math.atan2(turn[1, 0], turn[0, 0]))
-        pose[5] = math.degrees(math.atan2(-turn[2, 1], turn[2, 2]))
+        pose[4] = math.degrees(math.atan2(_turned(y_axis, inner, 0), _turned(x_axis, inner, 0)))
+        pose[5] = math.degrees(math.atan2(-_turned(up, inner, 1), _turned(up, inner, 2)))
+
+
+@part
+def put_pose(position: F64, rotation: F64, pose: F64) -> None:  # pragma: no cover - compiled
+    """Write the pose (6,) of a body at ``position`` (3,) in m with ``rotation`` (3,) in rad.
+
+    Its angles are in (-180, 180] degrees, as Unreal's ``FRotator::NormalizeAxis`` has them.
+    """
+    for axis in range(3):
+        pose[axis] = position[axis]
+        degrees = math.degrees(rotation[axis])
+        pose[3 + axis] = degrees - 360.0 * math.ceil((degrees - 180.0) / 360.0)
 
 
 @kernel
@@ -74,7 +87,6 @@ def gather_motion(
 ) -> None:  # pragma: no cover - compiled
     """Bring ``pose`` up to date for the first ``count`` actors and write ``motion`` (N, 15) for the snapshot.
 
-    Angles of bodies are in (-180, 180] degrees, as Unreal's ``FRotator::NormalizeAxis`` has them.
     ``pose``, ``relative``: (N, 6) m and degrees. The rest are columns of the bodies, (M, 3), SI with radians, read
     where ``slot`` is not negative. Parents stand further up than their children, so one pass is enough.
     """
@@ -82,15 +94,13 @@ def gather_motion(
         body = slot[row]
         motion[row, 6:15] = 0.0
         if body >= 0:
+            put_pose(position[body], rotation[body], pose[row])
             for axis in range(3):
-                pose[row, axis] = position[body, axis]
-                degrees = math.degrees(rotation[body, axis])
-                pose[row, 3 + axis] = degrees - 360.0 * math.ceil((degrees - 180.0) / 360.0)
                 motion[row, 6 + axis] = velocity[body, axis]
                 motion[row, 9 + axis] = math.degrees(angular_velocity[body, axis])
                 motion[row, 12 + axis] = acceleration[body, axis]
         elif parent_row[row] >= 0:
-            _follow(pose[parent_row[row]], relative[row], pose[row])
+            follow(pose[parent_row[row]], relative[row], pose[row])
         for axis in range(6):
             motion[row, axis] = pose[row, axis]
 

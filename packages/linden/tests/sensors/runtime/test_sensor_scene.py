@@ -13,10 +13,10 @@ from linden.maps.library import LoadedMap, MapLibrary
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.actors.posing import matrices
 from linden.scenery.mesh import LampOf, Mesh, join
 from linden.sensors.casting.caster import STATIC, Rays
 from linden.sensors.runtime.sensor_scene import SensorScene
-from linden.sensors.runtime.visible_actors import matrices
 from linden.world import World
 from opendrive_texts import street_through_junction
 

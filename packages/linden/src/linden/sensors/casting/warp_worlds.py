@@ -31,11 +31,21 @@ _MOST_CONSTANTS = 64
 
 
 class WorldBodies(NamedTuple):
-    """The bodies of K worlds, those of one world after the other."""
+    """The bodies of K worlds, those of one world after the other.
+
+    While no body comes or goes, ``begins`` and ``mesh`` are the same objects; they are then not copied again.
+    """
 
     begins: I32  # (K + 1,) where the bodies of each world begin
     mesh: I32  # (B,) number of the mesh among those of the caster
-    pose: F32  # (B, 3, 4) from the mesh's frame to the world, m
+    pose: Any  # (B, 3, 4) of float32 from the mesh's frame to the world, m; on the host or on the device
+
+
+class WorldEyes(NamedTuple):
+    """Where the sensors of K worlds are, on the host or on the device, of float32."""
+
+    place: Any  # (K, 3) m
+    turn: Any  # (K, 3, 3) from the frame of each sensor to its world
 
 
 class WorldHits(NamedTuple):
@@ -195,28 +205,29 @@ class WorldsCaster:
         self._first_face = self._put(first_face.astype(np.int32), wp.int32)
         self._tags = self._put(tags, wp.uint8)
         self._trees: dict[int, Any] = {}
+        self._grown: I32 | None = None  # the meshes of the latest bodies
         self._tree_ids = np.zeros(len(caster.bodies), np.uint64)
         self._tree_ids_there = self._balls_there = None
         self._balls = np.zeros((len(caster.bodies), 4), np.float32)
         self._constants: dict[int, tuple[object, Any]] = {}
 
-    def cast(self, bodies: WorldBodies, eyes: F32, towards: F32, farthest_m: float) -> WorldHits:
+    def cast(self, bodies: WorldBodies, eyes: WorldEyes, towards: F32, farthest_m: float) -> WorldHits:
         """Return what rays meet; they go out through the inner sides of bodies, as those of sensors do.
 
         Args:
             bodies: the bodies of K worlds.
-            eyes: (K, 3, 4) from the frame of each sensor to its world, m.
+            eyes: the sensors of K worlds.
             towards: (R, 3) unit vectors in the frame of a sensor.
             farthest_m: nothing is met beyond.
         """
         self._grow(bodies.mesh)
-        worlds, rays = len(eyes), len(towards)
+        worlds, rays = eyes.place.shape[0], len(towards)
         hits = WorldHits(
             wp.empty((worlds, rays), dtype=wp.float32, device=self._device),
             wp.empty((worlds, rays), dtype=wp.int32, device=self._device),
         )
         count = len(bodies.mesh)
-        mesh = self._put(bodies.mesh, wp.int32)
+        mesh = self._constant(bodies.mesh, wp.int32)
         inward, place, ball = (
             wp.empty(count, dtype=kind, device=self._device) for kind in (wp.mat33, wp.vec3, wp.vec4)
         )
@@ -231,13 +242,13 @@ class WorldsCaster:
                 wp.uint64(self._caster.standing_id),
                 self._tree_ids_there,
                 self._first_face,
-                self._put(bodies.begins, wp.int32),
+                self._constant(bodies.begins, wp.int32),
                 mesh,
                 inward,
                 place,
                 ball,
-                self._put(eyes[:, :, 3], wp.vec3),
-                self._put(eyes[:, :, :3], wp.mat33),
+                self._put(eyes.place, wp.vec3),
+                self._put(eyes.turn, wp.mat33),
                 self._constant(towards, wp.vec3),
                 float(farthest_m),
             ],
@@ -280,6 +291,9 @@ class WorldsCaster:
 
     def _grow(self, mesh: I32) -> None:
         """Build the trees of meshes that no body had before."""
+        if mesh is self._grown:
+            return
+        self._grown = mesh
         new = [number for number in np.unique(mesh).tolist() if number not in self._trees]
         for number in new:
             body = self._caster.bodies[number]
@@ -301,5 +315,8 @@ class WorldsCaster:
             known = self._constants[id(values)] = values, self._put(values, dtype)
         return known[1]
 
-    def _put(self, values: NDArray[Any], dtype: Any) -> DeviceArray:  # noqa: ANN401 - Warp's
+    def _put(self, values: Any, dtype: Any) -> DeviceArray:  # noqa: ANN401 - Warp's
+        """Return an array on the device; one that lies there already is not copied."""
+        if hasattr(values, "__cuda_array_interface__"):
+            return wp.array(data=values, dtype=dtype, device=self._device, copy=False)
         return wp.array(np.ascontiguousarray(values), dtype=dtype, device=self._device)

@@ -1,14 +1,25 @@
 """The actors that can be seen, as bodies for a caster: every part of each of them in its place, in a few operations."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.blueprints.library import BlueprintKind
+from linden.compiled import fingerprint, kept_part
 from linden.protocol.values.actors import ActorDescription
-from linden.scenery.actors.posing import VEHICLE_FRAMES, WALKER_FRAMES, posed_frames, vehicle_frames, walker_frames
+from linden.scenery.actors.posing import (
+    SOURCE,
+    VEHICLE_FRAMES,
+    WALKER_FRAMES,
+    matrices,
+    posed_frames,
+    put_part,
+    vehicle_frames,
+    walker_frames,
+)
 from linden.scenery.mesh import LampOf
 from linden.sensors.casting.caster import Instances
 from linden.simulation.actor_table import NO_BODY, ActorRecord
@@ -19,6 +30,7 @@ if TYPE_CHECKING:
     from linden.scenery.actors.actor_meshes import BlueprintMeshes
     from linden.simulation.episode import Episode
 
+F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
@@ -103,17 +115,24 @@ def instances_of(parts: PartRows, motion: Motion, frames: F64) -> Instances:
     )
 
 
-def poses_of_parts(parts: PartRows, place: F64, frames: F64) -> tuple[NDArray[np.float32], F64]:
+@kept_part(fingerprint(Path(__file__), SOURCE))
+def _put_parts(
+    actor: NDArray[np.intp], frame: NDArray[np.intp], scale: F64, place: F64, frames: F64, pose: F32, arm_m: F64
+) -> None:  # pragma: no cover - compiled
+    for row in range(len(actor)):
+        own = actor[row]
+        arm_m[row, 0], arm_m[row, 1], arm_m[row, 2] = put_part(
+            place[own], frames[own, frame[row]], scale[row], pose[row]
+        )
+
+
+def poses_of_parts(parts: PartRows, place: F64, frames: F64) -> tuple[F32, F64]:
     """Return the poses (P, 3, 4) of parts, and how far (P, 3) in m they are from their actors' origins.
 
     ``place`` (A, 3, 4) are the poses of actors, and ``frames`` (A, 14, 3, 4) those of the parts in them.
     """
-    actor = parts.actor
-    turn, inner = place[actor, :, :3], frames[actor, parts.frame]
-    pose = np.empty((len(actor), 3, 4), np.float32)
-    pose[:, :, :3] = turn @ inner[:, :, :3] * parts.scale[:, None, None]
-    arm_m: F64 = (turn @ inner[:, :, 3:])[:, :, 0]
-    pose[:, :, 3] = place[actor, :, 3] + arm_m
+    pose, arm_m = np.empty((len(parts.actor), 3, 4), np.float32), np.empty((len(parts.actor), 3))
+    _put_parts(parts.actor, parts.frame, parts.scale, place, frames, pose, arm_m)
     return pose, arm_m
 
 
@@ -187,18 +206,6 @@ class VisibleActors:
         if not known or not len(pose):
             return pose
         return np.concatenate([known.get(actor_id, now) for actor_id, now in self._poses.items()])
-
-
-def matrices(pose: F64) -> F64:
-    """Return (N, 3, 4) matrices of poses (N, 6), m and degrees; ``geometry.rotation_matrix`` for many at once."""
-    sp, sy, sr = np.sin(np.radians(pose[:, 3:6])).T
-    cp, cy, cr = np.cos(np.radians(pose[:, 3:6])).T
-    made = np.empty((len(pose), 3, 4))
-    made[:, 0, 0], made[:, 0, 1], made[:, 0, 2] = cp * cy, cy * sp * sr - sy * cr, -cy * sp * cr - sy * sr
-    made[:, 1, 0], made[:, 1, 1], made[:, 1, 2] = cp * sy, sy * sp * sr + cy * cr, -sy * sp * cr + cy * sr
-    made[:, 2, 0], made[:, 2, 1], made[:, 2, 2] = sp, -cp * sr, cp * cr
-    made[:, :, 3] = pose[:, :3]
-    return made
 
 
 def _survey(episode: "Episode", bodies: "BlueprintMeshes") -> _ActorRows:
