@@ -67,6 +67,14 @@ def pulling_away(stage: OfflineStage) -> float:
     return min(SHUTTLE_MPS, stage.ego.forward_mps + 1.4 * stage.step_s)
 
 
+@pytest.mark.parametrize("name", ["pedestrian_crossing_1", "pedestrian_turn_1"])
+def test_an_early_pedestrian_sets_out_as_much_sooner(laid: Laid, name: str) -> None:
+    sets_out_s = [
+        rehearse(laid(name, early=early_s), steady(SHUTTLE_MPS)).phases_s["conflict"] for early_s in ("0.5", "-1.0")
+    ]
+    assert sets_out_s[1] - sets_out_s[0] == pytest.approx(1.5, abs=0.1)
+
+
 @pytest.mark.parametrize("kind", [*MET, *TIMED_BY_TURNING, *OTHERS])
 def test_each_has_three_cases_or_more_on_the_route_and_off_it(kind: str) -> None:
     found = [case.on_route for case in CASES if case.type == kind]

@@ -36,7 +36,7 @@ class PedestrianCrossing(Scenario):
     parameters = (
         Number("ahead", 60.0, 40.0, 90.0, "m", "from the trigger point to where they cross"),
         Number("speed", 1.4, 0.8, 2.2, "m/s", "of the walk"),
-        Number("early", 0.0, -0.5, 1.5, "s", "by which they are in the lane's middle before the ego"),
+        Number("early", 0.0, -1.5, 0.5, "s", "by which they are in the lane's middle before the ego"),
         Choice("side", ("right", "left"), "from which they come"),
         Choice("walker", ("adult", "child"), "the pedestrian"),
     )
@@ -54,7 +54,7 @@ class PedestrianCrossing(Scenario):
 
     def trigger(self) -> Behaviour:
         """The ego will be there when they are."""
-        due_s = walking_s(abs(self.from_m), self.number("speed")) - self.number("early")
+        due_s = walking_s(abs(self.from_m), self.number("speed")) + self.number("early")
         return ego_is_due(self.place, self.number("ahead"), due_s, "where they cross")
 
     def conflict(self) -> Behaviour:

@@ -37,7 +37,7 @@ class PedestrianTurn(Scenario):
     parameters = (
         Number("beyond", 3.0, 1.0, 8.0, "m", "from the end of the junction to where they cross"),
         Number("speed", 1.3, 0.8, 2.2, "m/s", "of the walk"),
-        Number("early", 0.5, -0.5, 2.0, "s", "by which they are in the lane's middle before the ego"),
+        Number("early", -0.5, -2.0, 0.5, "s", "by which they are in the lane's middle before the ego"),
         Choice("side", ("right", "left"), "from which they come, seen from behind the turn"),
         Choice("walker", ("adult", "child"), "the pedestrian"),
     )
@@ -60,7 +60,7 @@ class PedestrianTurn(Scenario):
     def trigger(self) -> Behaviour:
         """The ego has come to the corner, and will be there when they are."""
         begins_m = self.place.trigger_s_m + next_junction(self.place).from_m - BEFORE_M
-        due_s = walking_s(abs(self._from_m), self.number("speed")) - self.number("early")
+        due_s = walking_s(abs(self._from_m), self.number("speed")) + self.number("early")
         return InTurn(
             EgoPasses(begins_m, "the corner"), ego_is_due(self.place, self._ahead_m, due_s, "where they cross")
         )
