@@ -1,7 +1,7 @@
 """Cases in the form that CARLA's ScenarioRunner 0.9.16 reads, which is OpenSCENARIO 1.0 with rules of its own.
 
-It takes no file of a later version, no variables and no identifiers of OpenDRIVE for lights. It looks at a condition
-with a delay after the delay, not for the moment so long ago; such delays become events, or are refused.
+It takes no file of a later version, no variables and no identifiers of OpenDRIVE for lights. The storyboard is that of
+``ordered_acts``.
 """
 
 from __future__ import annotations
@@ -11,26 +11,22 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import carla
-from scenariogeneration import xosc
-
 from basu.errors import ScenarioError
 from basu.files import write_bytes
 from basu_openscenario.exporting import timed_trajectory
-from basu_openscenario.exporting.conditions import ExportedTest
-from basu_openscenario.exporting.storyboard import LIGHTS, StoryboardWriter
+from basu_openscenario.exporting.storyboard import LIGHTS
 
 if TYPE_CHECKING:
-    from basu_openscenario.exporting.conditions import Tests
-    from basu_openscenario.exporting.motions import Motion
-    from basu_openscenario.exporting.phases import Guard
+    from collections.abc import Collection
 
 RENAMED = {"VariableDeclarations": "ParameterDeclarations", "VariableDeclaration": "ParameterDeclaration"}
-RENAMED |= {"VariableAction": "ParameterAction"}
+RENAMED |= {"VariableAction": "ParameterAction", "VariableCondition": "ParameterCondition"}
 """Elements that version 1.0 has under another name."""
 ATTRIBUTES = {"variableType": "parameterType", "variableRef": "parameterRef", "model3d": "model"}
 """Attributes that it has under another name."""
 VALUES = {
     ("priority", "override"): "overwrite",
+    ("variableType", "int"): "integer",
     ("rule", "greaterOrEqual"): "greaterThan",
     ("rule", "lessOrEqual"): "lessThan",
     ("relativeDistanceType", "euclidianDistance"): "cartesianDistance",
@@ -47,54 +43,13 @@ CONTROLS = ("Throttle", "Brake", "Clutch", "ParkingBrake", "SteeringWheel")
 """Of ``OverrideControllerValueAction``, which version 1.0 asks for."""
 
 
-class ScenarioRunnerWriter(StoryboardWriter):
-    """Writes the storyboard without moments that lie some time ago."""
-
-    def _begin(self, motion: Motion, before: str) -> Tests:
-        """Return the tests for the begin of a motion; one after another begins when the event of that is over."""
-        if motion.late_s and motion.guard is not None:
-            return ((_over(self._event_of(before)),),)
-        return super()._begin(motion, before)
-
-    def _leaves(self, motion: Motion, name: str) -> Tests:
-        """Return the tests for the departure of an actor, which follows its last motion."""
-        if motion.guard is not None:
-            return ((_over(self._event_of(name)),),)
-        return super()._leaves(motion, name)
-
-    def _light_due(self, guard: Guard | None, later_s: float) -> Tests:
-        """Return the tests for a change of a light.
-
-        Raises:
-            ScenarioError: it comes some time after a trigger.
-        """
-        if guard is not None and later_s > self.case.step_s:
-            raise ScenarioError("a light that changes some time after a trigger has no counterpart in ScenarioRunner")
-        return super()._light_due(guard, later_s)
-
-    def _event_of(self, name: str) -> str:
-        """Return an event of a motion.
-
-        Raises:
-            ScenarioError: the actor stands in that part, so that there is no event.
-        """
-        if name not in self.begins_s:
-            raise ScenarioError("a wait of some time after a trigger has no counterpart in ScenarioRunner")
-        return name
-
-
-def _over(event: str) -> ExportedTest:
-    """Return the test whether an event is over."""
-    done = xosc.StoryboardElementState.completeState
-    return ExportedTest(None, xosc.StoryboardElementStateCondition(xosc.StoryboardElementType.event, event, done))
-
-
-def adapt(root: ET.Element, town: carla.Map) -> None:
+def adapt(root: ET.Element, town: carla.Map, passed: Collection[str] = ()) -> None:
     """Change a scenario to what ScenarioRunner reads: version 1.0, heights, lights, controllers and the map's name.
 
     Args:
         root: of the document in version 1.2; changed in place.
         town: the map that the server has.
+        passed: the actors that others pass through.
 
     Raises:
         ScenarioError: the map has no light of an identifier.
@@ -114,7 +69,8 @@ def adapt(root: ET.Element, town: carla.Map) -> None:
     for nth, condition in enumerate(root.iter("Condition")):
         condition.set("name", f"{condition.get('name')}, {nth + 1}")  # it takes two of one name for one and the same
     for actor in root.iterfind(".//Init/Actions/Private"):
-        actor.append(_controller(actor.get("entityRef", "")))
+        name = actor.get("entityRef", "")
+        actor.append(_controller(name, is_passed=name in passed))
 
 
 def _to_first_version(root: ET.Element) -> None:
@@ -154,12 +110,15 @@ def _place_of(landmark: str, town: carla.Map) -> str:
     return f"pos={here.x:.2f},{here.y:.2f}"
 
 
-def _controller(actor: str) -> ET.Element:
-    """Return the action that gives an actor the controller beside the file."""
+def _controller(actor: str, *, is_passed: bool) -> ET.Element:
+    """Return the action that gives an actor the controller beside the file; others may pass through the actor."""
     action = ET.Element("PrivateAction")
     both = ET.SubElement(action, "ControllerAction")
     controller = ET.SubElement(ET.SubElement(both, "AssignControllerAction"), "Controller", {"name": f"of {actor}"})
-    ET.SubElement(ET.SubElement(controller, "Properties"), "Property", {"name": "module", "value": CONTROLLER})
+    properties = ET.SubElement(controller, "Properties")
+    ET.SubElement(properties, "Property", {"name": "module", "value": CONTROLLER})
+    if is_passed:
+        ET.SubElement(properties, "Property", {"name": timed_trajectory.COLLISIONS, "value": "false"})
     override = ET.SubElement(both, "OverrideControllerValueAction")
     for control in CONTROLS:
         ET.SubElement(override, control, {"value": "0", "active": "false"})

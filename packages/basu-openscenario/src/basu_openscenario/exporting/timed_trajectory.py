@@ -15,6 +15,8 @@ import carla
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+COLLISIONS = "collisions"
+"""The property of the controller with which others pass through the actor, as in a storyboard, if its value is "false"."""
 SPARE_MPS = 2.0
 """How much faster than the trajectory an actor may come back to it, so that one that was blocked does not jump."""
 
@@ -25,9 +27,11 @@ class TimedTrajectory:
     ScenarioRunner calls its methods, which are those of the base class of its own controllers.
     """
 
-    def __init__(self, actor: carla.Actor, _arguments: dict[str, str] | None = None) -> None:
+    def __init__(self, actor: carla.Actor, arguments: dict[str, str] | None = None) -> None:
         """Take the actor; it stands until there is a trajectory."""
         self._actor = actor
+        if (arguments or {}).get(COLLISIONS) == "false":
+            actor.set_collisions(False)
         self._places: list[carla.Transform] = []
         self._times_s: list[float] = []
         self._begin_s = 0.0
