@@ -59,7 +59,9 @@ def motions_in(document: ET.ElementTree) -> tuple[dict[str, list[FileMotion]], d
     return motions, places
 
 
-def fit(first: Array, motions: Sequence[FileMotion], due_s: Mapping[str, float], driven: Array) -> Fit:
+def fit(
+    first: Array, motions: Sequence[FileMotion], due_s: Mapping[str, float], driven: Array, origin_s: float | None = None
+) -> Fit:
     """Return the greatest distance of driven rows from motions, and when the motions begin so that they fit best.
 
     Each driven row counts: before the first motion the actor stands at its first place, each motion lasts until the
@@ -70,7 +72,8 @@ def fit(first: Array, motions: Sequence[FileMotion], due_s: Mapping[str, float],
         first: the first place (2,), in m.
         motions: in order.
         due_s: when each motion begins in the rehearsal, in s, by its event.
-        driven: rows (M, 3) of time in s, x and y in m; the first one is the begin of the run.
+        driven: rows (M, 3) of time in s, x and y in m.
+        origin_s: the begin of the rehearsal in the time of the rows; None: any.
 
     Returns:
         The distance in m and the begins in s of the run; infinite where a motion cannot have begun.
@@ -80,9 +83,9 @@ def fit(first: Array, motions: Sequence[FileMotion], due_s: Mapping[str, float],
     sums = np.concatenate([[0.0], np.maximum.accumulate(np.hypot(*(places - first).T))])
     stands, chosen = sums, []
     for motion in motions:
-        at_s = times_s[0] + due_s[motion.event]
+        late_s = np.zeros(rows) if origin_s is None else times_s - origin_s - due_s[motion.event]
         after, begins, worst = np.full(rows + 1, np.inf), np.full(rows + 1, -1), np.full(rows + 1, np.inf)
-        for nth in np.flatnonzero((times_s >= at_s - EARLY_S) & (times_s <= at_s + LATE_S)):
+        for nth in np.flatnonzero((late_s >= -EARLY_S) & (late_s <= LATE_S)):
             later_s = times_s[nth:] - times_s[nth]
             x_m, y_m = (np.interp(later_s, motion.points[:, 0], motion.points[:, column]) for column in (1, 2))
             off = np.hypot(x_m - places[nth:, 0], y_m - places[nth:, 1])

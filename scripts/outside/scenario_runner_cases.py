@@ -111,29 +111,32 @@ def serving() -> Iterator[int]:
 
 
 def watch(port: int, is_over: threading.Event, rows: Rows) -> None:
-    """Note the places of all actors with a role in each frame of the run, until ``is_over`` is set.
+    """Note the places of all actors with a role in each frame until the run ends, which ``is_over`` says.
 
-    The run is the time in which ScenarioRunner ticks. Before and after it the server ticks by itself.
+    The run ends with the last frame that ScenarioRunner ticks. After that the server ticks by itself.
     """
     client = carla.Client("127.0.0.1", port)
     client.set_timeout(60.0)
+    world = client.get_world()
+    frames: list[carla.WorldSnapshot] = []
+    called = world.on_tick(frames.append)
     roles: dict[int, str] = {}
-    while not is_over.is_set():
-        world = client.get_world()
-        try:
-            snapshot = world.wait_for_tick(5.0)
-        except RuntimeError:  # nothing ticks yet, or any more
-            continue
+    last_s = 0.0
+    while not is_over.wait(0.01):
+        snapshot = world.get_snapshot()
         if not world.get_settings().synchronous_mode:
             continue
-        for actor in snapshot:
-            if actor.id not in roles:
-                known = world.get_actor(actor.id)
-                moves = known is not None and known.type_id.partition(".")[0] in MOVES
-                roles[actor.id] = known.attributes.get("role_name", "") if moves else ""
-            if roles[actor.id]:
-                place = actor.get_transform().location
-                rows[roles[actor.id]].append((snapshot.timestamp.elapsed_seconds, place.x, place.y))
+        last_s = snapshot.timestamp.elapsed_seconds
+        for actor in world.get_actors([one.id for one in snapshot if one.id not in roles]):
+            moves = actor.type_id.partition(".")[0] in MOVES
+            roles[actor.id] = actor.attributes.get("role_name", "") if moves else ""
+    world.remove_on_tick(called)
+    for snapshot in frames:
+        now_s = snapshot.timestamp.elapsed_seconds
+        for one in snapshot:
+            if roles.get(one.id) and now_s <= last_s:
+                place = one.get_transform().location
+                rows[roles[one.id]].append((now_s, place.x, place.y))
 
 
 def free_port() -> int:
@@ -175,8 +178,8 @@ def compared(line: Line, exported: Exported, path: Path, rows: Rows) -> Line:
     if not set(places) <= set(rows):
         return line._replace(said=f"{line.said}, actors in the run: {', '.join(rows) or 'none'}")
     driven = {name: np.array(rows[name]) for name in places}
-    fits = {name: fit(places[name], motions[name], exported.begins_s, driven[name]) for name in places}
-    begin_s = fits[EGO].begins_s[0]
+    begin_s = fit(places[EGO], motions[EGO], exported.begins_s, driven[EGO]).begins_s[0]
+    fits = {name: fit(places[name], motions[name], exported.begins_s, driven[name], begin_s) for name in places}
     late_s = [
         began_s - begin_s - exported.begins_s[motion.event]
         for name in places

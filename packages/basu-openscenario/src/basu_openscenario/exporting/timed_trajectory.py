@@ -20,6 +20,9 @@ COLLISIONS = "collisions"
 SPARE_MPS = 2.0
 """How much faster than the trajectory an actor may come back to it, so that one that was blocked does not jump."""
 
+LEAST_M = 0.01
+"""A walker whose speed is off by no more in a frame is not moved besides."""
+
 
 class TimedTrajectory:
     """Gives an actor the velocity with which the next frame finds it where the trajectory is then.
@@ -83,7 +86,7 @@ class TimedTrajectory:
         share = min(1.0, most_mps / speed_mps) if speed_mps else 0.0
         turn_deg = (next_yaw_deg - here.rotation.yaw + 180.0) % 360.0 - 180.0
         if self._actor.type_id.startswith("walker."):
-            self._walk(ahead_m, aside_m, share * speed_mps)
+            self._walk(share * ahead_m, share * aside_m, frame_s, here)
         elif self._actor.type_id.startswith("vehicle."):
             up_mps = self._actor.get_velocity().z
             self._actor.set_target_velocity(
@@ -94,14 +97,21 @@ class TimedTrajectory:
             place = carla.Location(here.location.x + ahead_m, here.location.y + aside_m, here.location.z)
             self._actor.set_transform(carla.Transform(place, carla.Rotation(0.0, next_yaw_deg, 0.0)))
 
-    def _walk(self, ahead_m: float, aside_m: float, speed_mps: float) -> None:
-        """Let a walker go on; it keeps its direction where it stands."""
-        control = self._actor.get_control()
+    def _walk(self, ahead_m: float, aside_m: float, frame_s: float, here: carla.Transform) -> None:
+        """Let a walker go on; it keeps its direction where it stands.
+
+        A walker takes time to reach the speed of its control. What it will lack in the next frame is made up by its place.
+        """
+        control, velocity = self._actor.get_control(), self._actor.get_velocity()
         length_m = math.hypot(ahead_m, aside_m)
         if length_m:
             control.direction = carla.Vector3D(ahead_m / length_m, aside_m / length_m, 0.0)
-        control.speed = speed_mps
+        control.speed = length_m / frame_s
         self._actor.apply_control(control)
+        lacks_m, lacks_aside_m = ahead_m - velocity.x * frame_s, aside_m - velocity.y * frame_s
+        if math.hypot(lacks_m, lacks_aside_m) > LEAST_M:
+            place = carla.Location(here.location.x + lacks_m, here.location.y + lacks_aside_m, here.location.z)
+            self._actor.set_transform(carla.Transform(place, here.rotation))
 
     def _place(self, elapsed_s: float, here: carla.Transform) -> tuple[float, float, float]:
         """Return x and y in m and the yaw in deg at a time of the trajectory; without one, where the actor is."""
