@@ -6,18 +6,21 @@ It takes no file of a later version, no variables and no identifiers of OpenDRIV
 
 from __future__ import annotations
 
+import itertools
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import carla
+import numpy as np
 from basu.errors import ScenarioError
 from basu.files import write_bytes
 from basu_openscenario.exporting import timed_trajectory
 from basu_openscenario.exporting.storyboard import LIGHTS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
 RENAMED = {"VariableDeclarations": "ParameterDeclarations", "VariableDeclaration": "ParameterDeclaration"}
 RENAMED |= {"VariableAction": "ParameterAction", "VariableCondition": "ParameterCondition"}
@@ -41,6 +44,9 @@ LATER = {
 CONTROLLER = f"{timed_trajectory.__name__.rpartition('.')[2]}.py"
 CONTROLS = ("Throttle", "Brake", "Clutch", "ParkingBrake", "SteeringWheel")
 """Of ``OverrideControllerValueAction``, which version 1.0 asks for."""
+
+STEP_M = 0.25
+"""How far apart the places are at which roads are looked for below a trajectory."""
 
 
 def adapt(root: ET.Element, town: carla.Map, passed: Collection[str] = ()) -> None:
@@ -70,7 +76,11 @@ def adapt(root: ET.Element, town: carla.Map, passed: Collection[str] = ()) -> No
         condition.set("name", f"{condition.get('name')}, {nth + 1}")  # it takes two of one name for one and the same
     for actor in root.iterfind(".//Init/Actions/Private"):
         name = actor.get("entityRef", "")
-        actor.append(_controller(name, is_passed=name in passed))
+        properties = {timed_trajectory.COLLISIONS: "false"} if name in passed else {}
+        leaves = _leaves_roads(root, name, town)
+        if leaves is not None:
+            properties[timed_trajectory.COLLISIONS_END] = f"{leaves[0]:.2f},{leaves[1]:.2f}"
+        actor.append(_controller(name, properties))
 
 
 def _to_first_version(root: ET.Element) -> None:
@@ -110,15 +120,41 @@ def _place_of(landmark: str, town: carla.Map) -> str:
     return f"pos={here.x:.2f},{here.y:.2f}"
 
 
-def _controller(actor: str, *, is_passed: bool) -> ET.Element:
-    """Return the action that gives an actor the controller beside the file; others may pass through the actor."""
+def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float, float] | None:
+    """Return the place, x and y in m in CARLA's axes, at which an actor leaves lanes and pavements for good, if it does.
+
+    A rehearsal has no houses, so that a body which rolls off the road may go through one.
+    """
+    found = None
+    for group in root.iter("ManeuverGroup"):
+        entity = group.find("Actors/EntityRef")
+        if entity is None or entity.get("entityRef") != actor:
+            continue
+        vertices = [
+            (float(place.get("x", "nan")), -float(place.get("y", "nan")))
+            for place in group.iterfind(".//Vertex/Position/WorldPosition")
+        ]
+        for one, other in itertools.pairwise(vertices):
+            parts = max(math.ceil(math.dist(one, other) / STEP_M), 1)
+            for share in np.arange(1, parts + 1) / parts:
+                x_m, y_m = one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
+                here = carla.Location(x_m, y_m, 0.0)
+                if town.get_waypoint(here, project_to_road=False, lane_type=carla.LaneType.Any) is not None:
+                    found = None
+                elif found is None:
+                    found = (x_m, y_m)
+    return found
+
+
+def _controller(actor: str, own: Mapping[str, str]) -> ET.Element:
+    """Return the action that gives an actor the controller beside the file, with further properties."""
     action = ET.Element("PrivateAction")
     both = ET.SubElement(action, "ControllerAction")
     controller = ET.SubElement(ET.SubElement(both, "AssignControllerAction"), "Controller", {"name": f"of {actor}"})
     properties = ET.SubElement(controller, "Properties")
     ET.SubElement(properties, "Property", {"name": "module", "value": CONTROLLER})
-    if is_passed:
-        ET.SubElement(properties, "Property", {"name": timed_trajectory.COLLISIONS, "value": "false"})
+    for name, value in own.items():
+        ET.SubElement(properties, "Property", {"name": name, "value": value})
     override = ET.SubElement(both, "OverrideControllerValueAction")
     for control in CONTROLS:
         ET.SubElement(override, control, {"value": "0", "active": "false"})

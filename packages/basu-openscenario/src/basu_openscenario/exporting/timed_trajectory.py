@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 COLLISIONS = "collisions"
 """The property of the controller with which others pass through the actor, as in a storyboard, if its value is "false"."""
+COLLISIONS_END = "collisions_end_at"
+"""The property with the place, "x,y" in m, from which on they do so, since the trajectory goes on through scenery."""
+REACH_M = 1.0
+"""An actor so near to a place is there."""
 SPARE_MPS = 2.0
 """How much faster than the trajectory an actor may come back to it, so that one that was blocked does not jump."""
 
@@ -33,8 +37,10 @@ class TimedTrajectory:
     def __init__(self, actor: carla.Actor, arguments: dict[str, str] | None = None) -> None:
         """Take the actor; it stands until there is a trajectory."""
         self._actor = actor
-        if (arguments or {}).get(COLLISIONS) == "false":
+        arguments = arguments or {}
+        if arguments.get(COLLISIONS) == "false":
             actor.set_collisions(False)
+        self._collides_to = [float(value) for value in arguments.get(COLLISIONS_END, "").split(",") if value]
         self._places: list[carla.Transform] = []
         self._times_s: list[float] = []
         self._begin_s = 0.0
@@ -77,6 +83,9 @@ class TimedTrajectory:
             return
         frame_s = self._actor.get_world().get_snapshot().timestamp.delta_seconds
         here = self._actor.get_transform()
+        if self._collides_to and math.dist(self._collides_to, (here.location.x, here.location.y)) < REACH_M:
+            self._actor.set_collisions(False)
+            self._collides_to = []
         elapsed_s = self._now_s() - self._begin_s
         x_m, y_m, _ = self._place(elapsed_s, here)
         next_x_m, next_y_m, next_yaw_deg = self._place(elapsed_s + frame_s, here)
