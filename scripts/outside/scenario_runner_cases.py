@@ -12,8 +12,10 @@ from __future__ import annotations
 
 import argparse
 import collections
+import contextlib
 import math
 import os
+import queue
 import re
 import socket
 import subprocess
@@ -23,7 +25,6 @@ import threading
 import time
 import xml.etree.ElementTree as ET
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
 BIN = Path(sys.executable).parent
 """The folder of the commands of this environment."""
 
+FRAME_S, EXACT_S = 0.05, 1e-6
+"""The length of ScenarioRunner's frames. A frame by the clock is never as long so exactly."""
 LONGEST_S = 300.0
 """A run of more wall time is broken off."""
 NEAR_M = 0.2
@@ -97,7 +100,7 @@ class Line(NamedTuple):
         return f"{self.case}: {self.late_s:.2f} s late, {self.simulated_s:.1f} s simulated, {figures}{self.said}"
 
 
-@contextmanager
+@contextlib.contextmanager
 def serving() -> Iterator[int]:
     """Start a server on a free port, and yield the port."""
     command = [str(BIN / "linden"), "serve", "--port", "0"]
@@ -111,9 +114,9 @@ def serving() -> Iterator[int]:
 
 
 def watch(port: int, is_over: threading.Event, rows: Rows) -> None:
-    """Note the places of all actors with a role in each frame until the run ends, which ``is_over`` says.
+    """Note the places of all actors with a role in each frame of the run, until ``is_over`` is set.
 
-    The run ends with the last frame that ScenarioRunner ticks. After that the server ticks by itself.
+    These are the frames that ScenarioRunner ticks. Before and after them the server ticks by its clock.
     """
     client = carla.Client("127.0.0.1", port)
     client.set_timeout(60.0)
@@ -121,22 +124,19 @@ def watch(port: int, is_over: threading.Event, rows: Rows) -> None:
     frames: list[carla.WorldSnapshot] = []
     called = world.on_tick(frames.append)
     roles: dict[int, str] = {}
-    last_s = 0.0
-    while not is_over.wait(0.01):
+    while not is_over.wait(0.05):
         snapshot = world.get_snapshot()
-        if not world.get_settings().synchronous_mode:
-            continue
-        last_s = snapshot.timestamp.elapsed_seconds
         for actor in world.get_actors([one.id for one in snapshot if one.id not in roles]):
             moves = actor.type_id.partition(".")[0] in MOVES
             roles[actor.id] = actor.attributes.get("role_name", "") if moves else ""
     world.remove_on_tick(called)
     for snapshot in frames:
-        now_s = snapshot.timestamp.elapsed_seconds
+        if abs(snapshot.timestamp.delta_seconds - FRAME_S) > EXACT_S:
+            continue
         for one in snapshot:
-            if roles.get(one.id) and now_s <= last_s:
+            if roles.get(one.id):
                 place = one.get_transform().location
-                rows[roles[one.id]].append((now_s, place.x, place.y))
+                rows[roles[one.id]].append((snapshot.timestamp.elapsed_seconds, place.x, place.y))
 
 
 def free_port() -> int:
@@ -146,27 +146,26 @@ def free_port() -> int:
         return int(found.getsockname()[1])
 
 
-def played(line: Line, exported: Exported, path: Path, arguments: argparse.Namespace) -> Line:
-    """Return the line of an exported case, after it was played."""
+def played(line: Line, exported: Exported, path: Path, arguments: argparse.Namespace, port: int) -> Line:
+    """Return the line of an exported case, after it was played on the server at a port."""
     root = arguments.root.resolve()
     own = {"SCENARIO_RUNNER_ROOT": str(root), "PYTHONPATH": f"{arguments.agents.resolve()}:{root}"}
     rows: Rows = collections.defaultdict(list)
     is_over = threading.Event()
-    with serving() as port:
-        watcher = threading.Thread(target=watch, args=(port, is_over, rows))
-        watcher.start()
-        command = [str(arguments.python), "scenario_runner.py", "--sync", "--timeout", "60", "--openscenario", str(path)]
-        command += ["--port", str(port), "--trafficManagerPort", str(free_port())]
-        try:
-            done = subprocess.run(
-                command, cwd=root, env={**os.environ, **own}, capture_output=True, text=True, check=False,
-                timeout=LONGEST_S,
-            )  # fmt: skip
-            said, end = done.stdout + done.stderr, "" if done.returncode == 0 else f", ended with {done.returncode}"
-        except subprocess.TimeoutExpired as error:
-            said, end = str(error.stdout), f", broken off after {LONGEST_S:.0f} s"
-        is_over.set()
-        watcher.join()
+    watcher = threading.Thread(target=watch, args=(port, is_over, rows))
+    watcher.start()
+    command = [str(arguments.python), "scenario_runner.py", "--sync", "--timeout", "60", "--openscenario", str(path)]
+    command += ["--port", str(port), "--trafficManagerPort", str(free_port())]
+    try:
+        done = subprocess.run(
+            command, cwd=root, env={**os.environ, **own}, capture_output=True, text=True, check=False,
+            timeout=LONGEST_S,
+        )  # fmt: skip
+        said, end = done.stdout + done.stderr, "" if done.returncode == 0 else f", ended with {done.returncode}"
+    except subprocess.TimeoutExpired as error:
+        said, end = str(error.stdout), f", broken off after {LONGEST_S:.0f} s"
+    is_over.set()
+    watcher.join()
     path.with_suffix(".txt").write_text(said, encoding="utf-8")
     np.savez(path.with_suffix(".npz"), **{name: np.array(found) for name, found in rows.items()})
     return compared(line._replace(said=end), exported, path, rows)
@@ -240,24 +239,35 @@ def main() -> int:
     parser.add_argument("--agents", type=Path, required=True, help="the folder that has CARLA's package `agents`")
     parser.add_argument("--folder", type=Path, metavar="DIR", help="keep files, outputs and places of actors there")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="how many play at once (default: 1)")
-    parser.add_argument("--table", type=Path, metavar="FILE.md", help="write the table there")
+    parser.add_argument("--table", type=Path, metavar="FILE.md", help="write the table there, after each case anew")
     parser.add_argument("cases", nargs="*", default=[ALL], metavar="CASE")
     arguments = parser.parse_args()
     lines: dict[str, Line] = {}
+    ports: queue.Queue[int] = queue.Queue()
 
     def play(line: Line, exported: Exported | None, path: Path) -> None:
         began = time.monotonic()
-        done = line if exported is None else played(line, exported, path, arguments)
+        done = line
+        if exported is not None:
+            port = ports.get()
+            done = played(line, exported, path, arguments, port)
+            ports.put(port)
         print(f"{done} ({time.monotonic() - began:.0f} s)", flush=True)
         lines[line.case] = done
+        if arguments.table is not None:
+            arguments.table.write_text(table(list(lines.values())), encoding="utf-8")
 
-    with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(arguments.workers) as pool:
+    with (
+        tempfile.TemporaryDirectory() as temporary,
+        contextlib.ExitStack() as servers,
+        ThreadPoolExecutor(arguments.workers) as pool,
+    ):
+        for _ in range(arguments.workers):
+            ports.put(servers.enter_context(serving()))
         folder = (arguments.folder or Path(temporary)).resolve()
         folder.mkdir(parents=True, exist_ok=True)
         for one in [pool.submit(play, *made) for made in written(arguments.cases, folder)]:
             one.result()
-    if arguments.table is not None:
-        arguments.table.write_text(table(list(lines.values())), encoding="utf-8")
     return 0
 
 
