@@ -9,7 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -60,7 +59,11 @@ def motions_in(document: ET.ElementTree) -> tuple[dict[str, list[FileMotion]], d
 
 
 def fit(
-    first: Array, motions: Sequence[FileMotion], due_s: Mapping[str, float], driven: Array, origin_s: float | None = None
+    first: Array,
+    motions: Sequence[FileMotion],
+    due_s: Mapping[str, float],
+    driven: Array,
+    origin_s: float | None = None,
 ) -> Fit:
     """Return the greatest distance of driven rows from motions, and when the motions begin so that they fit best.
 

@@ -26,6 +26,7 @@ import time
 import xml.etree.ElementTree as ET
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import carla
@@ -42,7 +43,7 @@ from basu.scenarios.stage import EGO
 from basu_openscenario.exporting.case_export import SCENARIO_RUNNER, export_case
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from basu_openscenario.exporting.case_export import Exported
 
@@ -59,14 +60,17 @@ HEAD = """# Exported cases in ScenarioRunner
 
 <!-- written by scripts/outside/scenario_runner_cases.py, which needs ScenarioRunner -->
 
-`basu scenario export --for scenario-runner` writes {written} of the {all} cases that come with BASU, and ScenarioRunner 0.9.16
-played {played} of them on `linden serve`. {near} are within {limit} m. The table has a row for each scenario:
+`basu scenario export --for scenario-runner` wrote {written} of {all} cases for this table. ScenarioRunner 0.9.16
+played {played} of them to their end on `linden serve`, and {near} of these are within {limit} m. The table has a row
+for each scenario:
 
 - played: how many of the written cases came to their end.
-- late: how much later or earlier than in the rehearsal a motion begins or the case ends, at most, s. ScenarioRunner looks at conditions
-  once in a frame of 50 ms.
-- distance: the greatest distance of an actor from the motions in the file, m. All actors count, in all frames of the run. The begin of each motion is
-  the one that fits best, in steps of 50 ms.
+- late: how much later or earlier than in the rehearsal a motion begins, an actor leaves or the case ends, at most, s.
+  ScenarioRunner looks at conditions once in a frame of 50 ms.
+- distance: the greatest distance of an actor from the motions in the file, m. All actors count, in all frames of the
+  run. The begins of the motions are those that fit best, in steps of 50 ms.
+
+How to play such a case is on the [page of ScenarioRunner](../how-to/scenario-runner.md#cases-of-basu).
 
 | scenario | written | played | late, s | distance, m | refused, because of |
 |---|---|---|---|---|---|
@@ -83,7 +87,7 @@ class Line(NamedTuple):
     refusal: str = ""
     late_s: float = math.nan
     simulated_s: float = math.nan
-    worst_m: dict[str, float] = {}
+    worst_m: Mapping[str, float] = MappingProxyType({})
     said: str = ""
     """Why the run did not come to its end."""
 
@@ -219,7 +223,10 @@ def table(lines: Sequence[Line]) -> str:
     for name, of_it in sorted(by_scenario.items()):
         own = [line for line in of_it if not line.refusal]
         ended = [line for line in own if not line.said]
-        late_s, far_m = max((abs(one.late_s) for one in own), default=0), max((one.distance_m for one in own), default=0)
+        late_s, far_m = (
+            max((abs(one.late_s) for one in own), default=0),
+            max((one.distance_m for one in own), default=0),
+        )
         figures = f"{late_s:.2f} | {far_m:.2f}" if own else " | "
         why = sorted({line.refusal.partition("cannot be exported: ")[2] for line in of_it if line.refusal})
         short = "; ".join(one.removesuffix(" has no counterpart in OpenSCENARIO") for one in why)

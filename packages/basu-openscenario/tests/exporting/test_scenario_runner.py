@@ -125,7 +125,7 @@ class Actor:
     def apply_control(self, control: carla.WalkerControl) -> None:
         self.wanted = control.direction * control.speed
 
-    def set_collisions(self, collides: bool) -> None:
+    def set_collisions(self, collides: bool) -> None:  # noqa: FBT001 - as the client has it
         self.collides = collides
 
     def tick(self) -> None:

@@ -36,7 +36,7 @@ BAND_MPS = 0.5
 FASTEST_MPS = 16.0
 """The highest band."""
 SPARE_M = 0.02
-"""A place at the end of the ego's way counts as reached so much earlier, since the points of its trajectory are rounded."""
+"""A place at the end of the ego's way counts as reached so much earlier: the points of its trajectory are rounded."""
 STILL_M = 0.05
 """An actor that moves by less in the whole rehearsal stands."""
 
@@ -65,8 +65,8 @@ class RehearsedCase:
     def travelled_m(self, s_m: float) -> float:
         """Return how far the ego has travelled at a place of its route, in m along its own path.
 
-        Its path is some centimetres shorter than the route in a bend, and longer where it swings out. The rehearsal ends
-        where the last trigger holds, and so does the trajectory of the ego. ``SPARE_M`` less are enough there.
+        The rehearsal ends where the last trigger holds, and so does the trajectory of the ego. ``SPARE_M`` less are
+        enough there. Otherwise a player that rounds a path down by a millimetre would wait for ever.
         """
         way = at_rest(self.played.trails[EGO])[0][:, :2]
         path_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])

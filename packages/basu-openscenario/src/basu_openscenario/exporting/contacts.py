@@ -14,10 +14,12 @@ from basu.testing.offline_stage import half_sizes_m
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from numpy.typing import NDArray
+
     from basu.testing import Rehearsal
 
 NEAR_M = 0.3
-"""Boxes so near count as touching, since those of a server are larger than the ones of a rehearsal by some centimetres."""
+"""Boxes so near count as touching, since a server's boxes may be some centimetres larger than a rehearsal's."""
 
 
 def passed_through(played: Rehearsal, blueprints: Mapping[str, str]) -> frozenset[str]:
@@ -37,7 +39,7 @@ def passed_through(played: Rehearsal, blueprints: Mapping[str, str]) -> frozense
     return frozenset(found)
 
 
-def _gaps_m(played: Rehearsal, pair: tuple[str, str], blueprints: Mapping[str, str]) -> np.ndarray:
+def _gaps_m(played: Rehearsal, pair: tuple[str, str], blueprints: Mapping[str, str]) -> NDArray[np.float64]:
     """Return the distances (N,) in m of two actors' boxes in the frames in which both are there."""
     trails = [played.trails[name] for name in pair]
     both = ~np.isnan(trails[0][:, 0]) & ~np.isnan(trails[1][:, 0])

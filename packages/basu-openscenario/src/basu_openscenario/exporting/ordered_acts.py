@@ -7,7 +7,7 @@ ScenarioRunner 0.9.16 differs from the standard in four ways (``srunner`` has th
 - It waits for a delay from the moment at which it first looks, and then asks whether the condition holds
   (``convert_condition_to_atomic`` in ``tools/openscenario_parser.py``). The standard asks what held so long ago.
 - It counts the time and the distance of a condition from the moment at which it first looks.
-- It does not read the stop trigger of the storyboard. In the stop trigger of an act, one condition of a group is enough.
+- It does not read the stop trigger of the storyboard. In that of an act, one condition of a group is enough.
 
 The conditions of an act's events are first looked at when the act begins. So each group of conditions has an act of its
 own. Conditions that stay true in the standard as well (a distance travelled, a time, a mark) begin the act. The others
@@ -38,7 +38,7 @@ STAYS_TRUE = (xosc.TraveledDistanceCondition, xosc.SimulationTimeCondition, xosc
 """The conditions that stay true once they are, as they are used here."""
 
 ALWAYS = ExportedTest(EGO, xosc.SpeedCondition(-100.0, xosc.Rule.greaterThan))
-"""A test that always holds. ScenarioRunner finds that a variable with its first value, which is a text, equals no number."""
+"""A test that always holds. One for a mark of 0 would not: ScenarioRunner compares its first value as a text."""
 
 
 class OrderedActsWriter(StoryboardWriter):

@@ -14,6 +14,7 @@ from xml.etree import ElementTree as ET
 
 import carla
 import numpy as np
+
 from basu.errors import ScenarioError
 from basu.files import write_bytes
 from basu_openscenario.exporting import timed_trajectory
@@ -121,7 +122,7 @@ def _place_of(landmark: str, town: carla.Map) -> str:
 
 
 def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float, float] | None:
-    """Return the place, x and y in m in CARLA's axes, at which an actor leaves lanes and pavements for good, if it does.
+    """Return the place, x and y in m in CARLA's axes, at which an actor leaves lanes and pavements for good, or None.
 
     A rehearsal has no houses, so that a body which rolls off the road may go through one.
     """

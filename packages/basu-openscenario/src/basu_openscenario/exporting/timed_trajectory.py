@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 COLLISIONS = "collisions"
-"""The property of the controller with which others pass through the actor, as in a storyboard, if its value is "false"."""
+"""The property of the controller with which others pass through the actor, if its value is "false"."""
 COLLISIONS_END = "collisions_end_at"
 """The property with the place, "x,y" in m, from which on they do so, since the trajectory goes on through scenery."""
 REACH_M = 1.0
@@ -109,7 +109,7 @@ class TimedTrajectory:
     def _walk(self, ahead_m: float, aside_m: float, frame_s: float, here: carla.Transform) -> None:
         """Let a walker go on; it keeps its direction where it stands.
 
-        A walker takes time to reach the speed of its control. What it will lack in the next frame is made up by its place.
+        A walker takes time to reach the speed of its control. What it lacks in the next frame is made up by its place.
         """
         control, velocity = self._actor.get_control(), self._actor.get_velocity()
         length_m = math.hypot(ahead_m, aside_m)
