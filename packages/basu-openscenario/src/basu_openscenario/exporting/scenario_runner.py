@@ -122,10 +122,12 @@ def _place_of(landmark: str, town: carla.Map) -> str:
 
 
 def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float, float] | None:
-    """Return the place, x and y in m in CARLA's axes, at which an actor leaves lanes and pavements for good, or None.
+    """Return the place, x and y in m in CARLA's axes, at which an actor leaves the roads for good, or None.
 
-    A rehearsal has no houses, so that a body which rolls off the road may go through one.
+    A rehearsal has no houses, posts and trees, so that a body which rolls off the road may go through one. Pavements
+    are no part of the roads for vehicles.
     """
+    drives = root.find(f".//ScenarioObject[@name='{actor}']/Vehicle") is not None
     found = None
     for group in root.iter("ManeuverGroup"):
         entity = group.find("Actors/EntityRef")
@@ -140,7 +142,8 @@ def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float,
             for share in np.arange(1, parts + 1) / parts:
                 x_m, y_m = one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
                 here = carla.Location(x_m, y_m, 0.0)
-                if town.get_waypoint(here, project_to_road=False, lane_type=carla.LaneType.Any) is not None:
+                lane = town.get_waypoint(here, project_to_road=False, lane_type=carla.LaneType.Any)
+                if lane is not None and not (drives and lane.lane_type == carla.LaneType.Sidewalk):
                     found = None
                 elif found is None:
                     found = (x_m, y_m)

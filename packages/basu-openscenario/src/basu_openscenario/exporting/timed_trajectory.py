@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 COLLISIONS = "collisions"
 """The property of the controller with which others pass through the actor, if its value is "false"."""
 COLLISIONS_END = "collisions_end_at"
-"""The property with the place, "x,y" in m, from which on they do so, since the trajectory goes on through scenery."""
+"""The property with the place, "x,y" in m, from which on they and scenery do so: the trajectory leaves the roads."""
 REACH_M = 1.0
 """An actor so near to a place is there."""
 SPARE_MPS = 2.0
