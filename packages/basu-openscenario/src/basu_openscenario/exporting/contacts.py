@@ -25,7 +25,7 @@ NEAR_M = 0.3
 def passed_through(played: Rehearsal, blueprints: Mapping[str, str]) -> frozenset[str]:
     """Return the actors that others must pass through, so that all of them keep to their trajectories.
 
-    Of each pair of vehicles, pedestrians or things whose boxes touch in the rehearsal this is the ego, or the first.
+    Where the boxes of two vehicles, pedestrians or things touch in the rehearsal, this is the ego or the first one.
 
     Args:
         played: the rehearsal.

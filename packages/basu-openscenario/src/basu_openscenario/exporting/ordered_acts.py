@@ -1,4 +1,4 @@
-"""The storyboard of a case for CARLA's ScenarioRunner, whose conditions stay true once they have been true.
+"""The storyboard of a case for CARLA's ScenarioRunner. Its conditions stay true once they have been true.
 
 ScenarioRunner 0.9.16 differs from the standard in four ways (``srunner`` has the files):
 
@@ -52,7 +52,7 @@ class OrderedActsWriter(StoryboardWriter):
         self.longest_s = 0.0
 
     def acts(self, motions: Iterable[Sequence[Motion]]) -> list[xosc.Act]:
-        """Return the acts: those that set marks in the order of the rehearsal, that of the motions, and the end."""
+        """Return the acts that set marks, in the order of the rehearsal, then the act of the motions, then the end."""
         motions_and_lights = super().acts(motions)
         last = self.phases.last
         end = () if last is None else self._tests(last, float(self.case.played.times_s[-1]) - last.at_s)

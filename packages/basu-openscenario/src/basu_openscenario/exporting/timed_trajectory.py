@@ -25,7 +25,7 @@ SPARE_MPS = 2.0
 """How much faster than the trajectory an actor may come back to it, so that one that was blocked does not jump."""
 
 LEAST_M = 0.01
-"""A walker whose speed is off by no more in a frame is not moved besides."""
+"""A walker is not moved besides if it would be off by no more."""
 
 
 class TimedTrajectory:
