@@ -33,9 +33,10 @@ class Fit(NamedTuple):
     begins_s: tuple[float, ...]
 
 
-def motions_in(document: ET.ElementTree) -> tuple[dict[str, list[FileMotion]], dict[str, Array]]:
+def motions_in(document: ET.Element) -> tuple[dict[str, list[FileMotion]], dict[str, Array]]:
     """Return each actor's motions in order, and its first place (2,) in m in CARLA's frame."""
-    places, motions = {}, {}
+    places: dict[str, Array] = {}
+    motions: dict[str, list[FileMotion]] = {}
     for private in document.iterfind(".//Init/Actions/Private"):
         place = private.find(".//WorldPosition")
         assert place is not None

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import collections
 import contextlib
+import json
 import math
 import os
 import queue
@@ -171,13 +172,13 @@ def played(line: Line, exported: Exported, path: Path, arguments: argparse.Names
     is_over.set()
     watcher.join()
     path.with_suffix(".txt").write_text(said, encoding="utf-8")
-    np.savez(path.with_suffix(".npz"), **{name: np.array(found) for name, found in rows.items()})
+    path.with_suffix(".json").write_text(json.dumps(rows), encoding="utf-8")
     return compared(line._replace(said=end), exported, path, rows)
 
 
 def compared(line: Line, exported: Exported, path: Path, rows: Rows) -> Line:
     """Return the line with the distances of the actors from the file, and how late they are."""
-    motions, places = motions_in(ET.parse(path))
+    motions, places = motions_in(ET.parse(path).getroot())
     if not set(places) <= set(rows):
         return line._replace(said=f"{line.said}, actors in the run: {', '.join(rows) or 'none'}")
     driven = {name: np.array(rows[name]) for name in places}

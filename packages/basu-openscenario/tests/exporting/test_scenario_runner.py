@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import carla
 import pytest
@@ -20,6 +21,11 @@ FRAME_S = 0.05
 GAINS_MPS, WALKER_OFF_M = 0.4, 0.03
 """What a walker gains in a frame, and how far off it is then."""
 CASES = ("red_light_runner_1", "cut_in_before_stop_1", "pedestrian_crossing_1", "static_object_1")
+
+
+def all_of(where: Any, path: str) -> list[Any]:
+    """Return what an XPath finds."""
+    return list(where.xpath(path))
 
 
 @pytest.fixture(scope="module")
@@ -60,18 +66,18 @@ def test_lights_are_named_by_their_places(written: Write) -> None:
 def test_a_departure_comes_some_time_after_a_mark(written: Write) -> None:
     """ScenarioRunner waits for a delay before it looks at a condition, so that the act begins with the mark itself."""
     document = etree.parse(written("cut_in_before_stop_1"))
-    (leaving,) = document.xpath("//Event[.//DeleteEntityAction]/StartTrigger//ParameterCondition/@parameterRef")
-    (act,) = document.xpath(f"//Act[.//ParameterAction[@parameterRef='{leaving}']]")
-    (begin,) = act.xpath("StartTrigger//ParameterCondition[@parameterRef!='ended']/@parameterRef")
-    (later,) = act.xpath(".//Event/StartTrigger//Condition[number(@delay) > 1]")
-    assert later.xpath(".//ParameterCondition/@parameterRef") == [begin]
+    (leaving,) = all_of(document, "//Event[.//DeleteEntityAction]/StartTrigger//ParameterCondition/@parameterRef")
+    (act,) = all_of(document, f"//Act[.//ParameterAction[@parameterRef='{leaving}']]")
+    (begin,) = all_of(act, "StartTrigger//ParameterCondition[@parameterRef!='ended']/@parameterRef")
+    (later,) = all_of(act, ".//Event/StartTrigger//Condition[number(@delay) > 1]")
+    assert all_of(later, ".//ParameterCondition/@parameterRef") == [begin]
 
 
 def test_each_mark_is_declared(written: Write) -> None:
     document = etree.parse(written("pedestrian_crossing_1"))
-    declared = set(document.xpath("//ParameterDeclaration/@name"))
-    assert declared == set(document.xpath("//ParameterCondition/@parameterRef"))
-    assert declared == set(document.xpath("//ParameterAction/@parameterRef"))
+    declared = set(all_of(document, "//ParameterDeclaration/@name"))
+    assert declared == set(all_of(document, "//ParameterCondition/@parameterRef"))
+    assert declared == set(all_of(document, "//ParameterAction/@parameterRef"))
 
 
 @pytest.mark.parametrize(
