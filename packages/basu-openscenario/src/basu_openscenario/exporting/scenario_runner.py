@@ -21,7 +21,7 @@ from basu_openscenario.exporting import timed_trajectory
 from basu_openscenario.exporting.storyboard import LIGHTS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
 RENAMED = {"VariableDeclarations": "ParameterDeclarations", "VariableDeclaration": "ParameterDeclaration"}
 RENAMED |= {"VariableAction": "ParameterAction", "VariableCondition": "ParameterCondition"}
@@ -46,6 +46,8 @@ CONTROLLER = f"{timed_trajectory.__name__.rpartition('.')[2]}.py"
 CONTROLS = ("Throttle", "Brake", "Clutch", "ParkingBrake", "SteeringWheel")
 """Of ``OverrideControllerValueAction``, which version 1.0 asks for."""
 
+AGAIN_M = 2.0
+"""An actor that comes so near to a place has been there; more than ``timed_trajectory.REACH_M``."""
 STEP_M = 0.25
 """How far apart the places are at which roads are looked for below a trajectory."""
 
@@ -125,10 +127,25 @@ def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float,
     """Return the place, x and y in m in CARLA's axes, at which an actor leaves the roads for good, or None.
 
     A rehearsal has no houses, posts and trees, so that a body which rolls off the road may go through one. Pavements
-    are no part of the roads for vehicles.
+    are no part of the roads for vehicles. A place at which the actor has been before, as in a driveway, is none.
     """
     drives = root.find(f".//ScenarioObject[@name='{actor}']/Vehicle") is not None
-    found = None
+    places = list(_places_of(root, actor))
+    found = len(places)
+    for x_m, y_m in reversed(places):
+        lane = town.get_waypoint(carla.Location(x_m, y_m, 0.0), project_to_road=False, lane_type=carla.LaneType.Any)
+        if lane is not None and not (drives and lane.lane_type == carla.LaneType.Sidewalk):
+            break
+        found -= 1
+    if found == len(places):
+        return None
+    apart_m = np.hypot(*(np.array(places[: found + 1]) - places[found]).T)
+    left = np.flatnonzero(apart_m > AGAIN_M)
+    return places[found] if len(left) and (apart_m[: left[-1]] > AGAIN_M).all() else None
+
+
+def _places_of(root: ET.Element, actor: str) -> Iterator[tuple[float, float]]:
+    """Yield the places of an actor's trajectories in order, at most ``STEP_M`` apart, in m in CARLA's axes."""
     for group in root.iter("ManeuverGroup"):
         entity = group.find("Actors/EntityRef")
         if entity is None or entity.get("entityRef") != actor:
@@ -139,15 +156,8 @@ def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float,
         ]
         for one, other in itertools.pairwise(vertices):
             parts = max(math.ceil(math.dist(one, other) / STEP_M), 1)
-            for share in np.arange(1, parts + 1) / parts:
-                x_m, y_m = one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
-                here = carla.Location(x_m, y_m, 0.0)
-                lane = town.get_waypoint(here, project_to_road=False, lane_type=carla.LaneType.Any)
-                if lane is not None and not (drives and lane.lane_type == carla.LaneType.Sidewalk):
-                    found = None
-                elif found is None:
-                    found = (x_m, y_m)
-    return found
+            for share in np.arange(parts) / parts:
+                yield one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
 
 
 def _controller(actor: str, own: Mapping[str, str]) -> ET.Element:
