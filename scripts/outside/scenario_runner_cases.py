@@ -69,7 +69,7 @@ for each scenario:
 - late: how much later or earlier than in the rehearsal a motion begins, an actor leaves or the case ends, at most, s.
   ScenarioRunner looks at conditions once in a frame of 50 ms.
 - distance: the greatest distance of an actor from the motions in the file, m. All actors count, in all frames of the
-  run. The begins of the motions are those that fit best, in steps of 50 ms.
+  run. The motions begin where they fit best, in steps of 50 ms.
 
 How to play such a case is on the [page of ScenarioRunner](../how-to/scenario-runner.md#cases-of-basu).
 
