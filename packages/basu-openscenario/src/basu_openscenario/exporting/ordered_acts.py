@@ -3,7 +3,8 @@
 ScenarioRunner 0.9.16 differs from the standard in four ways (decision 0182 has the places in its code):
 
 - A condition that was true once counts as true from then on. Two conditions of a group need not hold at the same time.
-- It waits for a delay from the moment at which it first looks, and then asks whether the condition holds. The standard asks what held so long ago.
+- It waits for a delay from the moment at which it first looks, and then asks whether the condition holds. The
+  standard asks what held so long ago.
 - It counts the time and the distance of a condition from the moment at which it first looks.
 - It does not read the stop trigger of the storyboard. In that of an act, one condition of a group is enough.
 
