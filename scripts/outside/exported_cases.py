@@ -52,7 +52,7 @@ table. It has a row for each scenario:
   are within 5 cm, and an actor that starts slowly can be 0.6 m off.
 
 The distances are over all entities and all steps of 10 ms, in the plane. See [OpenSCENARIO](openscenario.md). What
-ScenarioRunner made of five cases is on [its page](../how-to/scenario-runner.md#cases-of-basu).
+ScenarioRunner makes of the cases is in a [table of its own](scenario-runner-cases.md).
 
 | scenario | cases | written | played | late, s | here, m | esmini, m | refused, because of |
 |---|---|---|---|---|---|---|---|

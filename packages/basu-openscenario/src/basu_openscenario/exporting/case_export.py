@@ -18,9 +18,11 @@ from basu.testing import careful, rehearse
 from basu_openscenario.exporting import scenario_runner
 from basu_openscenario.exporting.bodies import entity_of
 from basu_openscenario.exporting.conditions import RehearsedCase
+from basu_openscenario.exporting.contacts import passed_through
 from basu_openscenario.exporting.motions import motions_of
+from basu_openscenario.exporting.ordered_acts import OrderedActsWriter
 from basu_openscenario.exporting.phases import phases_of
-from basu_openscenario.exporting.storyboard import PHASE, StoryboardWriter
+from basu_openscenario.exporting.storyboard import StoryboardWriter
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -72,7 +74,9 @@ def export_case(playable: Playable, scenario: Scenario, opendrive: str, path: Pa
     exported = exported_case(playable, scenario, road.name, player)
     document = exported.scenario.get_element()
     if player == SCENARIO_RUNNER:
-        scenario_runner.adapt(document, carla.Map(playable.case.town, opendrive))
+        blueprints = {EGO: playable.case.ego.model, **{one.name: one.blueprint for one in playable.cast(scenario)}}
+        passed = passed_through(exported.played, blueprints)
+        scenario_runner.adapt(document, carla.Map(playable.case.town, opendrive), passed)
     path.parent.mkdir(parents=True, exist_ok=True)
     if player == SCENARIO_RUNNER:
         scenario_runner.write_controller(path.parent)
@@ -97,15 +101,17 @@ def exported_case(playable: Playable, scenario: Scenario, road: str, player: str
     for name, spec in specs.items():
         entities.add_scenario_object(name, entity_of(spec.blueprint, by_agent=False))
     places = {EGO: scenario.place.at(-scenario.place.trigger_s_m), **{name: one.pose for name, one in specs.items()}}
-    make_writer = scenario_runner.ScenarioRunnerWriter if player == SCENARIO_RUNNER else StoryboardWriter
+    make_writer = OrderedActsWriter if player == SCENARIO_RUNNER else StoryboardWriter
     writer = make_writer(RehearsedCase(scenario.place.route, played, STEP_S), phases)
     try:
         storyboard = xosc.StoryBoard(writer.init(motions, places), writer.stop(scenario.timeout_s))
-        storyboard.add_act(writer.act(motions))
+        for act in writer.acts(motions):
+            storyboard.add_act(act)
     except ScenarioError as error:
         raise ScenarioError(f"{playable.case.name} cannot be exported: {error}") from None
     variables = xosc.VariableDeclarations()
-    variables.add_variable(xosc.Variable(PHASE, xosc.ParameterType.string, "begun"))
+    for variable in writer.variables():
+        variables.add_variable(variable)
     written = xosc.Scenario(
         f"{playable.case.name}: {scenario.title()}",
         AUTHOR,

@@ -21,6 +21,7 @@ from basu.metrics.path_following import AT_END_M
 from basu.scenarios import triggers
 from basu.scenarios.stage import EGO
 from basu.scenarios.triggers.along_route import COMFORT_MPS2, SLACK_M
+from basu_openscenario.exporting.motions import at_rest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,6 +35,8 @@ BAND_MPS = 0.5
 """Times to a place are compared in bands of the ego's speed, because no condition has a time along a route."""
 FASTEST_MPS = 16.0
 """The highest band."""
+SPARE_M = 0.02
+"""A place at the end of the ego's way counts as reached so much earlier: the points of its trajectory are rounded."""
 STILL_M = 0.05
 """An actor that moves by less in the whole rehearsal stands."""
 
@@ -59,10 +62,17 @@ class RehearsedCase:
     played: Rehearsal
     step_s: float
 
-    @property
-    def start_s_m(self) -> float:
-        """Where the ego begins, along its route."""
-        return float(self.played.ego_s_m[0])
+    def travelled_m(self, s_m: float) -> float:
+        """Return how far the ego has travelled at a place of its route, in m along its own path.
+
+        The rehearsal ends where the last trigger holds, and so does the trajectory of the ego. ``SPARE_M`` less are
+        enough there. Otherwise a player that rounds a path down by a millimetre would wait for ever.
+        """
+        way = at_rest(self.played.trails[EGO])[0][:, :2]
+        path_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
+        along_m = np.maximum.accumulate(self.played.ego_s_m)
+        beyond_m = s_m - float(along_m[-1])
+        return float(np.interp(s_m, along_m, path_m)) + (beyond_m - SPARE_M if beyond_m > -SPARE_M else 0.0)
 
     def frame_at(self, time_s: float) -> int:
         """Return the frame at a time."""
@@ -88,7 +98,7 @@ def tests_of(node: Behaviour, case: RehearsedCase) -> Tests:
 
 def _travelled(case: RehearsedCase, s_m: float) -> ExportedTest:
     """Return the test whether the ego has come so far along its route."""
-    return ExportedTest(EGO, xosc.TraveledDistanceCondition(round(max(s_m - case.start_s_m, 0.0), 3)))
+    return ExportedTest(EGO, xosc.TraveledDistanceCondition(round(case.travelled_m(s_m), 3)))
 
 
 def _passes(node: triggers.EgoPasses, case: RehearsedCase) -> Tests:

@@ -1,36 +1,36 @@
 """Cases in the form that CARLA's ScenarioRunner 0.9.16 reads, which is OpenSCENARIO 1.0 with rules of its own.
 
-It takes no file of a later version, no variables and no identifiers of OpenDRIVE for lights. It looks at a condition
-with a delay after the delay, not for the moment so long ago; such delays become events, or are refused.
+It takes no file of a later version, no variables and no identifiers of OpenDRIVE for lights. The storyboard is that of
+``ordered_acts``.
 """
 
 from __future__ import annotations
 
+import itertools
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import carla
-from scenariogeneration import xosc
+import numpy as np
 
 from basu.errors import ScenarioError
 from basu.files import write_bytes
 from basu_openscenario.exporting import timed_trajectory
-from basu_openscenario.exporting.conditions import ExportedTest
-from basu_openscenario.exporting.storyboard import LIGHTS, StoryboardWriter
+from basu_openscenario.exporting.storyboard import LIGHTS
 
 if TYPE_CHECKING:
-    from basu_openscenario.exporting.conditions import Tests
-    from basu_openscenario.exporting.motions import Motion
-    from basu_openscenario.exporting.phases import Guard
+    from collections.abc import Collection, Iterator, Mapping
 
 RENAMED = {"VariableDeclarations": "ParameterDeclarations", "VariableDeclaration": "ParameterDeclaration"}
-RENAMED |= {"VariableAction": "ParameterAction"}
+RENAMED |= {"VariableAction": "ParameterAction", "VariableCondition": "ParameterCondition"}
 """Elements that version 1.0 has under another name."""
 ATTRIBUTES = {"variableType": "parameterType", "variableRef": "parameterRef", "model3d": "model"}
 """Attributes that it has under another name."""
 VALUES = {
     ("priority", "override"): "overwrite",
+    ("variableType", "int"): "integer",
     ("rule", "greaterOrEqual"): "greaterThan",
     ("rule", "lessOrEqual"): "lessThan",
     ("relativeDistanceType", "euclidianDistance"): "cartesianDistance",
@@ -46,55 +46,19 @@ CONTROLLER = f"{timed_trajectory.__name__.rpartition('.')[2]}.py"
 CONTROLS = ("Throttle", "Brake", "Clutch", "ParkingBrake", "SteeringWheel")
 """Of ``OverrideControllerValueAction``, which version 1.0 asks for."""
 
-
-class ScenarioRunnerWriter(StoryboardWriter):
-    """Writes the storyboard without moments that lie some time ago."""
-
-    def _begin(self, motion: Motion, before: str) -> Tests:
-        """Return the tests for the begin of a motion; one after another begins when the event of that is over."""
-        if motion.late_s and motion.guard is not None:
-            return ((_over(self._event_of(before)),),)
-        return super()._begin(motion, before)
-
-    def _leaves(self, motion: Motion, name: str) -> Tests:
-        """Return the tests for the departure of an actor, which follows its last motion."""
-        if motion.guard is not None:
-            return ((_over(self._event_of(name)),),)
-        return super()._leaves(motion, name)
-
-    def _light_due(self, guard: Guard | None, later_s: float) -> Tests:
-        """Return the tests for a change of a light.
-
-        Raises:
-            ScenarioError: it comes some time after a trigger.
-        """
-        if guard is not None and later_s > self.case.step_s:
-            raise ScenarioError("a light that changes some time after a trigger has no counterpart in ScenarioRunner")
-        return super()._light_due(guard, later_s)
-
-    def _event_of(self, name: str) -> str:
-        """Return an event of a motion.
-
-        Raises:
-            ScenarioError: the actor stands in that part, so that there is no event.
-        """
-        if name not in self.begins_s:
-            raise ScenarioError("a wait of some time after a trigger has no counterpart in ScenarioRunner")
-        return name
+AGAIN_M = 2.0
+"""An actor that comes so near to a place has been there; more than ``timed_trajectory.REACH_M``."""
+STEP_M = 0.25
+"""How far apart the places are at which roads are looked for below a trajectory."""
 
 
-def _over(event: str) -> ExportedTest:
-    """Return the test whether an event is over."""
-    done = xosc.StoryboardElementState.completeState
-    return ExportedTest(None, xosc.StoryboardElementStateCondition(xosc.StoryboardElementType.event, event, done))
-
-
-def adapt(root: ET.Element, town: carla.Map) -> None:
+def adapt(root: ET.Element, town: carla.Map, passed: Collection[str] = ()) -> None:
     """Change a scenario to what ScenarioRunner reads: version 1.0, heights, lights, controllers and the map's name.
 
     Args:
         root: of the document in version 1.2; changed in place.
         town: the map that the server has.
+        passed: the actors that others pass through.
 
     Raises:
         ScenarioError: the map has no light of an identifier.
@@ -114,7 +78,12 @@ def adapt(root: ET.Element, town: carla.Map) -> None:
     for nth, condition in enumerate(root.iter("Condition")):
         condition.set("name", f"{condition.get('name')}, {nth + 1}")  # it takes two of one name for one and the same
     for actor in root.iterfind(".//Init/Actions/Private"):
-        actor.append(_controller(actor.get("entityRef", "")))
+        name = actor.get("entityRef", "")
+        properties = {timed_trajectory.COLLISIONS: "false"} if name in passed else {}
+        leaves = _leaves_roads(root, name, town)
+        if leaves is not None:
+            properties[timed_trajectory.COLLISIONS_END] = f"{leaves[0]:.2f},{leaves[1]:.2f}"
+        actor.append(_controller(name, properties))
 
 
 def _to_first_version(root: ET.Element) -> None:
@@ -154,12 +123,52 @@ def _place_of(landmark: str, town: carla.Map) -> str:
     return f"pos={here.x:.2f},{here.y:.2f}"
 
 
-def _controller(actor: str) -> ET.Element:
-    """Return the action that gives an actor the controller beside the file."""
+def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float, float] | None:
+    """Return the place, x and y in m in CARLA's axes, at which an actor leaves the roads for good, or None.
+
+    A rehearsal has no houses, posts and trees, so that a body which rolls off the road may go through one. Pavements
+    are no part of the roads for vehicles. A place at which the actor has been before, as in a driveway, is none.
+    """
+    drives = root.find(f".//ScenarioObject[@name='{actor}']/Vehicle") is not None
+    places = list(_places_of(root, actor))
+    found = len(places)
+    for x_m, y_m in reversed(places):
+        lane = town.get_waypoint(carla.Location(x_m, y_m, 0.0), project_to_road=False, lane_type=carla.LaneType.Any)
+        if lane is not None and not (drives and lane.lane_type == carla.LaneType.Sidewalk):
+            break
+        found -= 1
+    if found == len(places):
+        return None
+    apart_m = np.hypot(*(np.array(places[: found + 1]) - places[found]).T)
+    left = np.flatnonzero(apart_m > AGAIN_M)
+    return places[found] if len(left) and (apart_m[: left[-1]] > AGAIN_M).all() else None
+
+
+def _places_of(root: ET.Element, actor: str) -> Iterator[tuple[float, float]]:
+    """Yield the places of an actor's trajectories in order, at most ``STEP_M`` apart, in m in CARLA's axes."""
+    for group in root.iter("ManeuverGroup"):
+        entity = group.find("Actors/EntityRef")
+        if entity is None or entity.get("entityRef") != actor:
+            continue
+        vertices = [
+            (float(place.get("x", "nan")), -float(place.get("y", "nan")))
+            for place in group.iterfind(".//Vertex/Position/WorldPosition")
+        ]
+        for one, other in itertools.pairwise(vertices):
+            parts = max(math.ceil(math.dist(one, other) / STEP_M), 1)
+            for share in np.arange(parts) / parts:
+                yield one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
+
+
+def _controller(actor: str, own: Mapping[str, str]) -> ET.Element:
+    """Return the action that gives an actor the controller beside the file, with further properties."""
     action = ET.Element("PrivateAction")
     both = ET.SubElement(action, "ControllerAction")
     controller = ET.SubElement(ET.SubElement(both, "AssignControllerAction"), "Controller", {"name": f"of {actor}"})
-    ET.SubElement(ET.SubElement(controller, "Properties"), "Property", {"name": "module", "value": CONTROLLER})
+    properties = ET.SubElement(controller, "Properties")
+    ET.SubElement(properties, "Property", {"name": "module", "value": CONTROLLER})
+    for name, value in own.items():
+        ET.SubElement(properties, "Property", {"name": name, "value": value})
     override = ET.SubElement(both, "OverrideControllerValueAction")
     for control in CONTROLS:
         ET.SubElement(override, control, {"value": "0", "active": "false"})

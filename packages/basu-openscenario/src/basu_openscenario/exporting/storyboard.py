@@ -46,18 +46,22 @@ class StoryboardWriter:
         self.begins_s: dict[str, float] = {}
         """When each event of a motion begins in the rehearsal, by its name."""
 
-    def act(self, motions: Iterable[Sequence[Motion]]) -> xosc.Act:
+    def acts(self, motions: Iterable[Sequence[Motion]]) -> list[xosc.Act]:
         """Return the one act: a group of maneuvers for each actor that does something, and one for the world."""
-        act = xosc.Act("the case", _at(0.0))
+        act = xosc.Act("the case", _at(0.0), self._stop_of_act("the case"))
         for parts in motions:
             events = [event for nth, motion in enumerate(parts) for event in self._events(motion, nth)]
             if events:
-                act.add_maneuver_group(_group(parts[0].actor, events))
+                act.add_maneuver_group(group_of(parts[0].actor, events))
         events = self._lights()
         events += self._marking_events()
         if events:
-            act.add_maneuver_group(_group(EGO, events, name="the world"))
-        return act
+            act.add_maneuver_group(group_of(EGO, events, name="the world"))
+        return [act]
+
+    def variables(self) -> list[xosc.Variable]:
+        """Return the variables that the events use; ask for them last."""
+        return [xosc.Variable(PHASE, xosc.ParameterType.string, "begun")]
 
     def init(self, motions: Iterable[Sequence[Motion]], places: dict[str, Pose]) -> xosc.Init:
         """Return the first places, and the lights that are set in the first frame."""
@@ -79,7 +83,7 @@ class StoryboardWriter:
         if last is not None:
             over_s = float(self.case.played.times_s[-1]) - last.at_s
             tests = (*self._tests(last, over_s), *tests)
-        return _trigger("the end", tests, "stop")
+        return trigger_of("the end", tests, "stop")
 
     # events ------------------------------------------------------------------------------------------------------
 
@@ -94,25 +98,25 @@ class StoryboardWriter:
                 event.add_action(f"{name} put", xosc.TeleportAction(_position(x_m, y_m, yaw_rad)))
             if motion.moves:
                 event.add_action(f"{name} moves", _following(name, motion.points))
-            event.add_trigger(_trigger(f"{name} begins", self._begin(motion, f"{motion.actor} {nth}")))
+            event.add_trigger(trigger_of(f"{name} begins", self._begin(motion)))
             self.begins_s[name] = motion.late_s + (0.0 if motion.guard is None else motion.guard.at_s)
             found.append(event)
         if motion.vanishes:
             event = xosc.Event(f"{name} leaves", xosc.Priority.parallel)
             event.add_action(f"{name} leaves the world", xosc.DeleteEntityAction(motion.actor))
-            event.add_trigger(_trigger(f"{name} is due to leave", self._leaves(motion, name)))
+            event.add_trigger(trigger_of(f"{name} is due to leave", self._due(motion, motion.length_s)))
             found.append(event)
         return found
 
-    def _begin(self, motion: Motion, _before: str) -> Tests:
-        """Return the tests for the begin of a motion; ``_before`` is the event of the one before it."""
+    def _stop_of_act(self, _name: str) -> xosc.Trigger | None:
+        """Return the trigger of an act's end; None: the act ends with the storyboard."""
+        return None
+
+    def _begin(self, motion: Motion) -> Tests:
+        """Return the tests for the begin of a motion."""
         if motion.late_s or motion.guard is None:
             return self._due(motion, 0.0)
         return self._tests(motion.guard, 0.0)
-
-    def _leaves(self, motion: Motion, _name: str) -> Tests:
-        """Return the tests for the departure of an actor at the end of a motion, which is the event ``_name``."""
-        return self._due(motion, motion.length_s)
 
     def _due(self, motion: Motion, later_s: float) -> Tests:
         """Return the tests for a moment after the begin of a motion."""
@@ -151,7 +155,7 @@ class StoryboardWriter:
             guard, name = list(self.markers.items())[written]
             event = xosc.Event(name, xosc.Priority.parallel)
             event.add_action(f"{name} is noted", xosc.VariableSetAction(PHASE, guard.node.name))
-            event.add_trigger(_trigger(guard.node.name, self._tests(guard, 0.0)))
+            event.add_trigger(trigger_of(guard.node.name, self._tests(guard, 0.0)))
             found.append(event)
             written += 1
         return found
@@ -174,13 +178,9 @@ class StoryboardWriter:
                 event.add_action(f"light {nth + 1} shows", xosc.TrafficSignalStateAction(landmark, state))
                 guard = self._latest(command.time_s)
                 later_s = command.time_s - (0.0 if guard is None else guard.at_s)
-                event.add_trigger(_trigger(f"light {nth + 1} is due", self._light_due(guard, later_s)))
+                event.add_trigger(trigger_of(f"light {nth + 1} is due", self._after(guard, later_s)))
                 found.append(event)
         return found
-
-    def _light_due(self, guard: Guard | None, later_s: float) -> Tests:
-        """Return the tests for a change of a light after a guard."""
-        return self._after(guard, later_s)
 
     def _latest(self, time_s: float) -> Guard | None:
         """Return the last guard that had come true by a time."""
@@ -190,7 +190,7 @@ class StoryboardWriter:
         return max(guards, key=lambda one: one.at_s, default=None)
 
 
-def _group(actor: str, events: Sequence[xosc.Event], name: str = "") -> xosc.ManeuverGroup:
+def group_of(actor: str, events: Sequence[xosc.Event], name: str = "") -> xosc.ManeuverGroup:
     """Return a group of one maneuver of an actor."""
     maneuver = xosc.Maneuver(f"maneuver of {name or actor}")
     for event in events:
@@ -201,7 +201,7 @@ def _group(actor: str, events: Sequence[xosc.Event], name: str = "") -> xosc.Man
     return group
 
 
-def _trigger(name: str, tests: Tests, kind: str = "start") -> xosc.Trigger:
+def trigger_of(name: str, tests: Tests, kind: str = "start") -> xosc.Trigger:
     """Return groups of tests as a trigger."""
     trigger = xosc.Trigger(kind)
     for group in tests:

@@ -15,8 +15,17 @@ import carla
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+COLLISIONS = "collisions"
+"""The property of the controller with which others pass through the actor, if its value is "false"."""
+COLLISIONS_END = "collisions_end_at"
+"""The property with the place, "x,y" in m, from which on they and scenery do so: the trajectory leaves the roads."""
+REACH_M = 1.0
+"""An actor so near to a place is there."""
 SPARE_MPS = 2.0
 """How much faster than the trajectory an actor may come back to it, so that one that was blocked does not jump."""
+
+LEAST_M = 0.01
+"""A walker is not moved besides if it would be off by no more."""
 
 
 class TimedTrajectory:
@@ -25,9 +34,13 @@ class TimedTrajectory:
     ScenarioRunner calls its methods, which are those of the base class of its own controllers.
     """
 
-    def __init__(self, actor: carla.Actor, _arguments: dict[str, str] | None = None) -> None:
+    def __init__(self, actor: carla.Actor, arguments: dict[str, str] | None = None) -> None:
         """Take the actor; it stands until there is a trajectory."""
         self._actor = actor
+        arguments = arguments or {}
+        if arguments.get(COLLISIONS) == "false":
+            actor.set_collisions(False)
+        self._collides_to = [float(value) for value in arguments.get(COLLISIONS_END, "").split(",") if value]
         self._places: list[carla.Transform] = []
         self._times_s: list[float] = []
         self._begin_s = 0.0
@@ -70,6 +83,9 @@ class TimedTrajectory:
             return
         frame_s = self._actor.get_world().get_snapshot().timestamp.delta_seconds
         here = self._actor.get_transform()
+        if self._collides_to and math.dist(self._collides_to, (here.location.x, here.location.y)) < REACH_M:
+            self._actor.set_collisions(False)
+            self._collides_to = []
         elapsed_s = self._now_s() - self._begin_s
         x_m, y_m, _ = self._place(elapsed_s, here)
         next_x_m, next_y_m, next_yaw_deg = self._place(elapsed_s + frame_s, here)
@@ -79,7 +95,7 @@ class TimedTrajectory:
         share = min(1.0, most_mps / speed_mps) if speed_mps else 0.0
         turn_deg = (next_yaw_deg - here.rotation.yaw + 180.0) % 360.0 - 180.0
         if self._actor.type_id.startswith("walker."):
-            self._walk(ahead_m, aside_m, share * speed_mps)
+            self._walk(share * ahead_m, share * aside_m, frame_s, here)
         elif self._actor.type_id.startswith("vehicle."):
             up_mps = self._actor.get_velocity().z
             self._actor.set_target_velocity(
@@ -90,14 +106,21 @@ class TimedTrajectory:
             place = carla.Location(here.location.x + ahead_m, here.location.y + aside_m, here.location.z)
             self._actor.set_transform(carla.Transform(place, carla.Rotation(0.0, next_yaw_deg, 0.0)))
 
-    def _walk(self, ahead_m: float, aside_m: float, speed_mps: float) -> None:
-        """Let a walker go on; it keeps its direction where it stands."""
-        control = self._actor.get_control()
+    def _walk(self, ahead_m: float, aside_m: float, frame_s: float, here: carla.Transform) -> None:
+        """Let a walker go on; it keeps its direction where it stands.
+
+        A walker takes time to reach the speed of its control. What it lacks in the next frame is made up by its place.
+        """
+        control, velocity = self._actor.get_control(), self._actor.get_velocity()
         length_m = math.hypot(ahead_m, aside_m)
         if length_m:
             control.direction = carla.Vector3D(ahead_m / length_m, aside_m / length_m, 0.0)
-        control.speed = speed_mps
+        control.speed = length_m / frame_s
         self._actor.apply_control(control)
+        lacks_m, lacks_aside_m = ahead_m - velocity.x * frame_s, aside_m - velocity.y * frame_s
+        if math.hypot(lacks_m, lacks_aside_m) > LEAST_M:
+            place = carla.Location(here.location.x + lacks_m, here.location.y + lacks_aside_m, here.location.z)
+            self._actor.set_transform(carla.Transform(place, here.rotation))
 
     def _place(self, elapsed_s: float, here: carla.Transform) -> tuple[float, float, float]:
         """Return x and y in m and the yaw in deg at a time of the trajectory; without one, where the actor is."""
