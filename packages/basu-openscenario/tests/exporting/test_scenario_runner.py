@@ -82,12 +82,17 @@ def test_each_mark_is_declared(written: Write) -> None:
 
 @pytest.mark.parametrize(
     ("name", "passed", "leaving"),
-    [("turn_into_traffic_1", {EGO}, set()), ("dynamic_object_1", set(), {"object"}), ("backing_car_1", set(), set())],
+    [
+        ("turn_into_traffic_1", {EGO}, set()),
+        ("dynamic_object_1", set(), {"object"}),
+        ("oncoming_overtaker_2", {EGO}, {"oncoming"}),
+        ("backing_car_1", set(), set()),
+    ],
 )
 def test_actors_that_meet_or_leave_the_roads_in_the_rehearsal_do_not_collide(
     written: Write, name: str, passed: set[str], leaving: set[str]
 ) -> None:
-    """The others of ``turn_into_traffic_1`` drive through the ego, and a bicycle rolls into a house."""
+    """Others drive through the ego, a bicycle rolls into a house, and the overtaker rolls over a parking lane."""
     actors = etree.parse(written(name)).findall(".//Init/Actions/Private")
     having = {
         prop: {one.get("entityRef") for one in actors if one.findall(f".//Property[@name='{prop}']")}

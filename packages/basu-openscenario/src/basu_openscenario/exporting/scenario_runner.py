@@ -50,6 +50,8 @@ AGAIN_M = 2.0
 """An actor that comes so near to a place has been there; more than ``timed_trajectory.REACH_M``."""
 STEP_M = 0.25
 """How far apart the places are at which roads are looked for below a trajectory."""
+BESIDE = (carla.LaneType.Sidewalk, carla.LaneType.Parking, carla.LaneType.Border)
+"""The lanes beside the roads, on which things stand."""
 
 
 def adapt(root: ET.Element, town: carla.Map, passed: Collection[str] = ()) -> None:
@@ -126,15 +128,16 @@ def _place_of(landmark: str, town: carla.Map) -> str:
 def _leaves_roads(root: ET.Element, actor: str, town: carla.Map) -> tuple[float, float] | None:
     """Return the place, x and y in m in CARLA's axes, at which an actor leaves the roads for good, or None.
 
-    A rehearsal has no houses, posts and trees, so that a body which rolls off the road may go through one. Pavements
-    are no part of the roads for vehicles. A place at which the actor has been before, as in a driveway, is none.
+    A rehearsal has no houses, posts, trees and parked cars, so that a body which rolls off the road may go through
+    one. For vehicles, pavements, their borders and parking lanes are no part of the roads. A place at which the actor
+    has been before, as in a driveway, is none.
     """
     drives = root.find(f".//ScenarioObject[@name='{actor}']/Vehicle") is not None
     places = list(_places_of(root, actor))
     found = len(places)
     for x_m, y_m in reversed(places):
         lane = town.get_waypoint(carla.Location(x_m, y_m, 0.0), project_to_road=False, lane_type=carla.LaneType.Any)
-        if lane is not None and not (drives and lane.lane_type == carla.LaneType.Sidewalk):
+        if lane is not None and not (drives and lane.lane_type in BESIDE):
             break
         found -= 1
     if found == len(places):
