@@ -1,7 +1,7 @@
 """`LampReaders`: counts the clients that a snapshot has told to read the lamps and that have not read them yet.
 
-LibCarla's ``carla.LightManager`` reads the lamps by a call from the thread that receives the snapshot, whenever the
-snapshot says that lamps or the map have changed. If no answer comes, the time-out of that call ends the client's whole
+A snapshot says whether lamps or the map have changed. If so, LibCarla's ``carla.LightManager`` reads the lamps by a
+call, from the thread that receives the snapshot. If no answer comes, the time-out of that call ends the client's whole
 process (``std::terminate``), even if its program is not waiting for the simulator. So the server's end waits for these
 calls.
 
