@@ -1,11 +1,15 @@
 """Claims about what an agent gets to see: what all its sensors measured, in step with a live simulator's ticks."""
 
 import json
+import queue
 from pathlib import Path
 
 import carla
+import numpy as np
 import pytest
 
+import basu
+from basu.agents.sensor_file import read_sensors
 from basu.cli import main
 from servers import RunningServer
 
@@ -68,3 +72,36 @@ def test_nothing_of_the_sensors_is_left_behind(
     assert steps
     world = carla.Client("127.0.0.1", simulator.port).get_world()
     assert not world.get_actors().filter("sensor.*")
+
+
+POINT = np.dtype([("place", "<f4", 3), ("cosine", "<f4"), ("actor", "<u4"), ("label", "<u4")])
+ROAD = 1
+
+
+@pytest.mark.parametrize(("name", "most_own"), [("rig.json", 0.1), ("autoware_sensors.json", 0.35)])
+def test_the_lidar_of_a_packaged_rig_sees_the_road_and_little_of_its_own_shuttle(
+    simulator: RunningServer, name: str, most_own: float
+) -> None:
+    (lidar,) = (
+        spec
+        for spec in read_sensors(Path(basu.__file__).parent / "config" / name)
+        if spec.type_id == "sensor.lidar.ray_cast"
+    )
+    world = carla.Client("127.0.0.1", simulator.port).get_world()
+    library, pose = world.get_blueprint_library(), carla.Location(lidar.x_m, lidar.y_m, lidar.z_m)
+    shuttle = world.spawn_actor(library.find("vehicle.easymile.ez10"), world.get_map().get_spawn_points()[10])
+    blueprint = library.find("sensor.lidar.ray_cast_semantic")
+    for attribute, value in lidar.attributes:
+        if attribute in {"channels", "range", "points_per_second", "upper_fov", "lower_fov"}:
+            blueprint.set_attribute(attribute, value)
+    blueprint.set_attribute("rotation_frequency", "20")  # a whole turn in a frame of 0.05 s
+    eye = world.spawn_actor(blueprint, carla.Transform(pose), attach_to=shuttle)
+    clouds: queue.Queue[bytes] = queue.Queue()
+    eye.listen(lambda measured: clouds.put(bytes(measured.raw_data)))
+    world.tick(60.0)
+    points = np.frombuffer(clouds.get(timeout=60.0), POINT)
+    eye.stop()
+    for actor in (eye, shuttle):
+        actor.destroy()
+    assert np.mean(points["actor"] == shuttle.id) < most_own
+    assert np.mean(points["label"] == ROAD) > 0.15
