@@ -10,7 +10,7 @@ import numpy as np
 from numba import cuda as numba_cuda
 from numpy.typing import NDArray
 
-from linden.scenery.actors.posing import MOST_BONES, SCRATCH, Bones, bones, put_matrix, put_part
+from linden.scenery.actors.posing import MOST_BONES, SCRATCH, BoneChain, bones, put_matrix, put_part
 from linden.sensors.runtime.world_parts import FRAMES, PartsOfBodies, put_body, put_eye
 
 cuda: Any = numba_cuda
@@ -38,7 +38,7 @@ class EyesOnDevice(NamedTuple):
 
 @cuda.jit  # type: ignore[untyped-decorator] # numba has no hints for it
 def _place_bodies(
-    bodies: BodiesOnDevice, walked_m: OnDevice, parts: PartsOfBodies, chain: Bones, poses: OnDevice
+    bodies: BodiesOnDevice, walked_m: OnDevice, parts: PartsOfBodies, chain: BoneChain, poses: OnDevice
 ) -> None:  # pragma: no cover - compiled
     """Write the poses (P, 3, 4) of the parts of this thread's body."""
     index = cuda.grid(1)
@@ -79,7 +79,7 @@ class PartsOnGpu:
 
     def __init__(self) -> None:
         """Copy the bones of walkers to the device."""
-        self._bones = Bones(*(cuda.to_device(column) for column in bones()))
+        self._bones = BoneChain(*(cuda.to_device(column) for column in bones()))
         self._of: PartsOfBodies | None = None
 
     def poses(self, bodies: BodiesOnDevice, parts: PartsOfBodies, walked_m: NDArray[np.float64]) -> OnDevice:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from basu_openscenario.roads.place import Place
 
 
-class Piece(NamedTuple):
+class RoadPiece(NamedTuple):
     """A part of a road in m along it, and the lanes that count; None: all."""
 
     road: str
@@ -43,7 +43,7 @@ def inside_polygon(x_m: float, y_m: float, corners_m: Sequence[tuple[float, floa
     return inside
 
 
-def stretch_pieces(network: Network, stretch: RoadStretch) -> list[Piece]:
+def stretch_pieces(network: Network, stretch: RoadStretch) -> list[RoadPiece]:
     """Return the parts of roads from the first cursor of a stretch to the last one, up to its length.
 
     Raises:
@@ -55,7 +55,7 @@ def stretch_pieces(network: Network, stretch: RoadStretch) -> list[Piece]:
             raise ScenarioError(
                 f"{stretch.line}: {network.path} has no road '{road}'; it has {there}, ...: correct the road's id"
             )
-    found: list[Piece] = []
+    found: list[RoadPiece] = []
     for nth in range(len(stretch.roads) - 1):
         found += [one for one in _between(network, stretch, nth) if one not in found]
     left_m = math.inf if stretch.length_m is None else stretch.length_m
@@ -69,7 +69,7 @@ def stretch_pieces(network: Network, stretch: RoadStretch) -> list[Piece]:
     return pieces
 
 
-def _between(network: Network, stretch: RoadStretch, nth: int) -> list[Piece]:
+def _between(network: Network, stretch: RoadStretch, nth: int) -> list[RoadPiece]:
     """Return the parts of roads from a cursor to the next one."""
     first, last = (network.roads[one] for one in stretch.roads[nth : nth + 2])
     s_m, end_m = stretch.s_m[nth : nth + 2]
@@ -77,7 +77,7 @@ def _between(network: Network, stretch: RoadStretch, nth: int) -> list[Piece]:
     if first is last:
         low_m, high_m = (0.0 if s_m is None else s_m), (first.length_m if end_m is None else end_m)
         low_m, high_m = (min(max(one, 0.0), first.length_m) for one in (low_m, high_m))
-        return [Piece(first.number, min(low_m, high_m), max(low_m, high_m), low_m <= high_m, lanes)]
+        return [RoadPiece(first.number, min(low_m, high_m), max(low_m, high_m), low_m <= high_m, lanes)]
     there = lane_place(network, last.number, 0.0 if end_m is None else end_m, 0)
     for lane in driving_lanes(network, first.number, s_m or 0.0):
         try:
@@ -85,11 +85,11 @@ def _between(network: Network, stretch: RoadStretch, nth: int) -> list[Piece]:
         except ScenarioError:
             continue
         begin_m = s_m if s_m is not None else 0.0 if along else first.length_m
-        found = [Piece(first.number, *((begin_m, first.length_m) if along else (0.0, begin_m)), along, lanes)]
-        found += [Piece(one.road, 0.0, network.roads[one.road].length_m, one.at_start, None) for one in steps[:-1]]
+        found = [RoadPiece(first.number, *((begin_m, first.length_m) if along else (0.0, begin_m)), along, lanes)]
+        found += [RoadPiece(one.road, 0.0, network.roads[one.road].length_m, one.at_start, None) for one in steps[:-1]]
         stop_m = end_m if end_m is not None else last.length_m if steps[-1].at_start else 0.0
         ends = (0.0, stop_m) if steps[-1].at_start else (stop_m, last.length_m)
-        return [*found, Piece(last.number, *ends, steps[-1].at_start, end_lanes)]
+        return [*found, RoadPiece(last.number, *ends, steps[-1].at_start, end_lanes)]
     raise ScenarioError(
         f"{stretch.line}: no way leads from the road '{first.number}' to the road '{last.number}'; correct the cursors"
     )

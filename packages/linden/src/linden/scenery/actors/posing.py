@@ -40,7 +40,7 @@ WALKER_BONES = (
 WALKER_FRAMES = ("actor", *WALKER_BONES)
 
 
-class Bones(NamedTuple):
+class BoneChain(NamedTuple):
     """The bones that are shown, those they hang on, and the feet: M rows, parents before children."""
 
     parents: I32
@@ -64,7 +64,7 @@ MOST_BONES = 32
 
 
 @lru_cache(maxsize=1)
-def bones() -> Bones:
+def bones() -> BoneChain:
     """Return the bones of all walkers."""
     all_bones = skeleton()
     feet = [f"crl_{part}__{side}" for part in ("foot", "toe") for side in "LR"]
@@ -84,7 +84,7 @@ def bones() -> Bones:
             joint[row], ahead[row], sign[row] = number, before, -1.0 if name == "leg" else 1.0
     share, angles_deg = all_bones.gait_share, np.array(list(all_bones.gait_deg.values()))
     foot_rows = [names.index(name) for name in feet]
-    return Bones(
+    return BoneChain(
         parents=np.array(
             [rows.index(all_bones.parents[row]) if all_bones.parents[row] >= 0 else -1 for row in rows], np.int32
         ),
@@ -157,7 +157,7 @@ def _bend_deg(share: float, shares: F64, angles_deg: F64) -> float:  # pragma: n
 
 @part
 def put_bones(
-    stature_m: float, walked_m: float, speed_mps: float, body: Bones, scratch: F64, frames: F64
+    stature_m: float, walked_m: float, speed_mps: float, body: BoneChain, scratch: F64, frames: F64
 ) -> None:  # pragma: no cover - compiled
     """Write ``WALKER_FRAMES`` (14, 3, 4) of one walker, as `linden.blueprints.skeleton.walking_pose` has it.
 
@@ -247,7 +247,7 @@ def vehicle_frames(hubs_m: F64, steer_rad: F64, rolled_rad: F64) -> F64:
 
 @kernel
 def _put_all_bones(
-    stature_m: F64, walked_m: F64, speed_mps: F64, body: Bones, frames: F64
+    stature_m: F64, walked_m: F64, speed_mps: F64, body: BoneChain, frames: F64
 ) -> None:  # pragma: no cover - compiled
     scratch = np.empty((len(body.parents), SCRATCH))
     for row in range(len(stature_m)):

@@ -15,7 +15,7 @@ from linden.scenery.actors import posing
 from linden.scenery.actors.posing import (
     SCRATCH,
     WALKER_FRAMES,
-    Bones,
+    BoneChain,
     bones,
     put_actor,
     put_bones,
@@ -84,7 +84,7 @@ def parts_of_bodies(
 
 @part
 def put_body(
-    body: Body, spec: Spec, walked_m: float, chain: Bones, pose: F64, scratch: F64, place: F64, frames: F64
+    body: Body, spec: Spec, walked_m: float, chain: BoneChain, pose: F64, scratch: F64, place: F64, frames: F64
 ) -> None:  # pragma: no cover - compiled
     """Write the place (3, 4) of a body in the world, and the frames (14, 3, 4) of its parts in its own.
 
@@ -113,7 +113,7 @@ def _build(sources: int) -> Any:  # noqa: ANN401 - numba's
 
     def place_bodies(
         start: int, stop: int, flat: Rows, spec_of: I32, specs: Rows, walked_m: F64, parts: PartsOfBodies,
-        chain: Bones, found: PlacedParts,
+        chain: BoneChain, found: PlacedParts,
     ) -> None:  # fmt: skip # pragma: no cover - compiled
         """Place the parts of bodies from ``start`` to ``stop``."""
         if sources < 0:
