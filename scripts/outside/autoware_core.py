@@ -6,7 +6,8 @@ PROGRAM is ``autoware_simple_pure_pursuit_exe``, or a program that starts it wit
 MESSAGES is the folder ``autoware_planning_msgs`` of autoware_msgs. This script takes the place of Autoware's planners.
 It publishes the part of the route ahead as a trajectory, with a speed for each point: the posted limit, less in bends,
 and 0 m/s before the line of a stop sign until the shuttle has stood there for a second. OPTIONS go to `basu run`.
-Writes drive.json and the run folder. With ``--smoother`` the trajectory has no ramps: limits and zeros alone.
+With ``--smoother`` it publishes ten times a second, without ramps, for Autoware's ``velocity_smoother_node``. That is a
+program that adds the node's own parameter files to its arguments. Writes drive.json and the run folder.
 """
 # ruff: noqa: ANN401 - messages of ROS
 
@@ -27,7 +28,7 @@ import numpy as np
 from basu.records.history.files import read_history
 from basu.routing import ControlKind, Route, plan
 from basu.routing.route_file import read_routes
-from basu_ros.autoware import CONTROL, KINEMATIC
+from basu_ros.autoware import ACCELERATION, CONTROL, KINEMATIC
 from basu_ros.dds import Ros2Node
 from linden_ros2 import basic_messages as basic
 from linden_ros2 import frames
@@ -40,6 +41,7 @@ TRAJECTORY = Topic("/planning/trajectory", "autoware_planning_msgs/msg/Trajector
 RAW = Topic("/planning/scenario_planning/scenario_selector/trajectory", TRAJECTORY.type, depth=1)
 SPACING_M, BEHIND_M, AHEAD_M, RENEWED_M = 0.5, 5.0, 50.0, 5.0
 WHEELBASE_M, FRONT_M = 2.8, 3.41  # of the shuttle; from the rear axle to the front wheels and to the bumper
+FAR_M, OFTEN_S = 100.0, 0.1  # for the smoother
 BEFORE_LINE_M, STANDS_S, AT_REST_MPS = 1.0, 1.0, 0.05
 RAMP_MPS2, ACROSS_MPS2, CREEP_MPS, TOP_MPS = 0.6, 1.0, 0.5, 6.7
 PARAMETERS = f"""/**:
@@ -77,7 +79,7 @@ class Planner:
         self._most_mps = np.minimum(np.minimum(limit_mps, TOP_MPS), np.sqrt(ACROSS_MPS2 / np.maximum(bend_1pm, 1e-3)))
         lines = [each.s_m for each in route.controls if each.kind is ControlKind.STOP_SIGN]
         self._halts_m = [line - FRONT_M - BEFORE_LINE_M for line in lines]
-        self._at = 0
+        self._at, self._sent_s = 0, -math.inf
         self._sent_m = -math.inf
         self._stood_s = 0.0
         self._last_s = math.nan
@@ -97,15 +99,17 @@ class Planner:
                 self._halts_m.pop(0)
                 self._stood_s, self._sent_m = 0.0, -math.inf
         self._last_s = now_s
-        if at_m < self._sent_m + RENEWED_M:
+        is_due = at_m >= self._sent_m + RENEWED_M if self._with_ramps else now_s > self._sent_s + OFTEN_S - 0.01
+        if not is_due:
             return None
+        self._sent_s = now_s
         return self.trajectory(odometry)
 
     def trajectory(self, odometry: Any) -> Any:
-        """Return the trajectory from some metres behind to ``AHEAD_M`` before the vehicle."""
+        """Return the trajectory from some metres behind to ``AHEAD_M`` or ``FAR_M`` before the vehicle."""
         self._sent_m = float(self.s_m[self._at])
         first = max(0, self._at - int(BEHIND_M / SPACING_M))
-        some = slice(first, self._at + int(AHEAD_M / SPACING_M))
+        some = slice(first, self._at + int((AHEAD_M if self._with_ramps else FAR_M) / SPACING_M))
         speed_mps = self._speeds_mps(some)
         types, points = self._types, []
         for (x_m, y_m, z_m), yaw_rad, mps in zip(self.points_m[some], self.yaw_rad[some], speed_mps, strict=True):
@@ -144,7 +148,7 @@ def main() -> int:
     parser.add_argument("messages", type=Path)
     parser.add_argument("opendrive", type=Path)
     parser.add_argument("--routes", type=Path, required=True)
-    parser.add_argument("--smoother", nargs="+", metavar="WORD", help="a command that smooths the trajectory")
+    parser.add_argument("--smoother", type=Path, metavar="PROGRAM", help="velocity_smoother_node with its parameters")
     parser.add_argument("--lookahead", nargs=2, type=float, default=[1.0, 1.0], metavar=("S", "M"))
     parser.add_argument("--domain", type=int, default=1 + os.getpid() % 90, help="of ROS 2 (default: by the process)")
     parser.add_argument("-o", "--output", type=Path, required=True)
@@ -167,7 +171,10 @@ def main() -> int:
         ros = ["--ros-args", "--params-file", str(settings), *remaps]
         started(stack, args.output / "controller.txt", str(args.program), *ros)
         if args.smoother is not None:
-            started(stack, args.output / "smoother.txt", *args.smoother)
+            renamed = {"input/trajectory": RAW, "output/trajectory": TRAJECTORY, "input/acceleration": ACCELERATION}
+            remaps = [word for name, topic in renamed.items() for word in ("-r", f"~/{name}:={topic.name}")]
+            ros = ["--ros-args", "--params-file", str(settings), *remaps]
+            started(stack, args.output / "smoother.txt", str(args.smoother), *ros)
         publish(run, planner, types, TRAJECTORY if args.smoother is None else RAW)
     told = results(args.output / "latest")
     print(json.dumps(told, indent=1))
