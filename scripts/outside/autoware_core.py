@@ -153,6 +153,10 @@ def main() -> int:
     parser.add_argument("--domain", type=int, default=1 + os.getpid() % 90, help="of ROS 2 (default: by the process)")
     parser.add_argument("-o", "--output", type=Path, required=True)
     args, others = parser.parse_known_args()
+    for given in (args.program, args.messages / "msg" / "Trajectory.msg", args.opendrive, args.routes, args.smoother):
+        if given is not None and not given.exists():
+            print(f"{given} does not exist; see docs/how-to/ros.md, section Autoware", file=sys.stderr)
+            return 2
     args.output.mkdir(parents=True, exist_ok=True)
     os.environ.update(ROS_DOMAIN_ID=str(args.domain), ROS_LOCALHOST_ONLY="1")
     texts = {file.stem: file.read_text(encoding="utf-8") for file in (args.messages / "msg").glob("Trajectory*.msg")}
