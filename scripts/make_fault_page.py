@@ -50,7 +50,7 @@ LAST_S, GHOST_S = 5.0, 1.0
 
 
 def page(found: tuple[Encounter, ...]) -> str:
-    """Return the page."""
+    """Return the page of faults as Markdown."""
     lines = [HEAD + "| | encounter | BASU | nuPlan |", "|---|---|---|---|"]
     sections = []
     for index, one in enumerate(found, 1):

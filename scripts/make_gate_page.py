@@ -45,7 +45,7 @@ It closes others, because an agent could drive the vehicle of another one. Witho
 
 
 def page() -> str:
-    """Return the page."""
+    """Return the page of the gate's rules as Markdown."""
     lines = [HEAD, "| function | allowed | else |", "|---|---|---|"]
     order = list(Rule)
     for name, entry in sorted(CALLS.items(), key=lambda item: (order.index(item[1].rule), item[0])):

@@ -236,7 +236,7 @@ del GLOBALS["TrafficAction"]  # it only contains one of the others
 
 
 def page() -> str:
-    """Return the page."""
+    """Return the page of what is supported as Markdown."""
     parts = [
         HEAD.format(
             versions=", ".join(VERSIONS),

@@ -98,7 +98,7 @@ def code(names: list[str], last: str = ", ") -> str:
 
 
 def page() -> str:
-    """Return the page."""
+    """Return the page of rules as Markdown."""
     environment = Environment(
         loader=FileSystemLoader(HERE),
         undefined=StrictUndefined,

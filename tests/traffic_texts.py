@@ -6,7 +6,7 @@ from openscenario_texts import lane_position
 
 
 def traffic_action(inside: str, name: str = "") -> str:
-    """Return a global action on traffic."""
+    """Return the XML of a global action on traffic."""
     named = f' trafficName="{name}"' if name else ""
     return f"<GlobalAction><TrafficAction{named}>{inside}</TrafficAction></GlobalAction>"
 
@@ -30,7 +30,7 @@ def source(
 
 
 def sink(s: object, *, lane: object = -1, rate: object = None, radius: object = 10, mix: str = "") -> str:
-    """Return a sink of vehicles."""
+    """Return the XML of a sink that removes vehicles."""
     given = "" if rate is None else f' rate="{rate}"'
     return traffic_action(
         f'<TrafficSinkAction radius="{radius}"{given}>{lane_position(s, lane)}{mix}</TrafficSinkAction>', "out"
@@ -50,7 +50,7 @@ def swarm(
     directions: tuple[object, object] | None = None,
     mix: str = "",
 ) -> str:
-    """Return a swarm around an entity."""
+    """Return the XML of a swarm of vehicles around an entity."""
     given = "" if velocity is None else f' velocity="{velocity}"'
     limits = "" if speeds is None else f'<InitialSpeedRange lowerLimit="{speeds[0]}" upperLimit="{speeds[1]}"/>'
     ways = ""

@@ -24,6 +24,7 @@ from typing import Any
 
 import carla
 import numpy as np
+from drive_figures import figures_of
 
 from basu.records.history.files import read_history
 from basu.routing import ControlKind, Route, plan
@@ -180,7 +181,7 @@ def main() -> int:
             ros = ["--ros-args", "--params-file", str(settings), *remaps]
             started(stack, args.output / "smoother.txt", str(args.smoother), *ros)
         publish(run, planner, types, TRAJECTORY if args.smoother is None else RAW)
-    told = results(args.output / "latest")
+    told = figures_of(args.output / "latest", read_history(args.output / "latest"))
     print(json.dumps(told, indent=1))
     (args.output / "drive.json").write_text(json.dumps(told, indent=1), encoding="utf-8")
     return 0
@@ -212,28 +213,6 @@ def started(stack: ExitStack, log: Path, *words: str) -> "subprocess.Popen[bytes
     stack.callback(process.wait)
     stack.callback(process.terminate)
     return process
-
-
-def results(folder: Path) -> dict[str, Any]:
-    """Return the figures of a run folder."""
-    history = read_history(folder)
-    result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    lateral_m = np.abs(history.frames["lateral_m"])
-    signs, meta = result["stop_signs"], result["meta"]
-    return {
-        "status": result["status"],
-        "message": result.get("message"),
-        "driven_m": round(float(history.frames["route_s_m"].max()), 1),
-        "route_m": round(float(history.facts.route.s_m[-1]), 1),
-        "cross_track_mean_m": round(float(lateral_m.mean()), 3),
-        "cross_track_max_m": round(float(lateral_m.max()), 3),
-        "scores": result.get("scores"),
-        "stops_kept": f"{sum(sign['stopped'] for sign in signs)} of {len(signs)}",
-        "collisions": result["collisions"],
-        "infractions": [each["kind"] for each in result["infractions"]],
-        "simulated_s": meta["simulated_s"],
-        "times_real_time": round(meta["simulated_s"] / meta["wall_s"], 2),
-    }
 
 
 if __name__ == "__main__":

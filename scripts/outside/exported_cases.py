@@ -18,14 +18,10 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-import carla
 from esmini_compare import esmini_log
+from placed_cases import placed_cases, reasons
 
-import linden
-from basu.episode.spec import description_of
 from basu.errors import BasuError, ScenarioError
-from basu.managers.placed_scenario import place_scenario
-from basu.routing import lane_graph, plan
 from basu.scenarios.cases import ALL, cases_of
 from basu_openscenario.exporting.case_export import STEP_S, export_case
 from basu_openscenario.playing.player import make_player
@@ -75,7 +71,7 @@ class Line(NamedTuple):
         return not math.isnan(self.esmini_m)
 
     def __str__(self) -> str:
-        """Return the line of the case."""
+        """Return how the result of the case is printed: refused, written, or with its figures."""
         if self.refusal:
             return f"refused  {self.case}: {self.refusal}"
         if not self.is_played:
@@ -116,15 +112,10 @@ def judged(case: str, scenario: str, exported: Exported, path: Path, program: Pa
 
 def lines_of(words: Sequence[str], folder: Path, program: Path, most: int) -> list[Line]:
     """Return the lines of all cases; of each scenario, at most so many are played."""
-    opendrive = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
-    town = carla.Map("Linden", opendrive)
-    lanes = lane_graph.build(town)
     folder.mkdir(parents=True, exist_ok=True)
     found: list[Line] = []
-    for playable in cases_of(words):
+    for playable, scenario, opendrive in placed_cases(words):
         case, kind = playable.case.name, playable.scenario.__name__
-        route = plan(town, description_of(playable, town), lanes)
-        scenario = place_scenario(playable, route, town, own=True).scenario
         path = folder / f"{case}.xosc"
         try:
             exported = export_case(playable, scenario, opendrive, path)
@@ -138,7 +129,7 @@ def lines_of(words: Sequence[str], folder: Path, program: Path, most: int) -> li
 
 
 def table(lines: Sequence[Line]) -> str:
-    """Return the page."""
+    """Return the page with a row of the table for each scenario."""
     by_scenario: dict[str, list[Line]] = collections.defaultdict(list)
     for line in lines:
         by_scenario[line.scenario].append(line)
@@ -147,9 +138,8 @@ def table(lines: Sequence[Line]) -> str:
         written = [line for line in of_it if not line.refusal]
         played = [line for line in written if line.is_played]
         figures = (max((getattr(line, part) for line in played), default=math.nan) for part in Line._fields[3:])
-        why = sorted({line.refusal.partition("cannot be exported: ")[2] for line in of_it if line.refusal})
         cells = [str(len(played)), *(f"{value:.2f}" if played else "" for value in figures)]
-        short = "; ".join(one.removesuffix(" has no counterpart in OpenSCENARIO") for one in why)
+        short = reasons(line.refusal for line in of_it)
         rows.append(f"| {name} | {len(of_it)} | {len(written)} | {' | '.join(cells)} | {short} |")
     all_written = sum(not line.refusal for line in lines)
     all_played = sum(line.is_played for line in lines)

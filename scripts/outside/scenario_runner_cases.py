@@ -17,7 +17,6 @@ import json
 import math
 import os
 import queue
-import re
 import socket
 import subprocess
 import sys
@@ -33,23 +32,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 import numpy as np
 from fitted_motions import fit, motions_in
+from placed_cases import placed_cases, reasons
 
-import linden
-from basu.episode.spec import description_of
 from basu.errors import BasuError
-from basu.managers.placed_scenario import place_scenario
-from basu.routing import lane_graph, plan
-from basu.scenarios.cases import ALL, cases_of
+from basu.scenarios.cases import ALL
 from basu.scenarios.stage import EGO
 from basu_openscenario.exporting.case_export import SCENARIO_RUNNER, export_case
+
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+from servers import running_server
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from basu_openscenario.exporting.case_export import Exported
-
-BIN = Path(sys.executable).parent
-"""The folder of the commands of this environment."""
 
 FRAME_S, EXACT_S = 0.05, 1e-6
 """The length of ScenarioRunner's frames. A frame by the clock is never as long so exactly."""
@@ -98,24 +94,11 @@ class Line(NamedTuple):
         return max(self.worst_m.values(), default=math.inf)
 
     def __str__(self) -> str:
-        """Return the line of the case."""
+        """Return how the result of the case is printed: refused, or with its figures."""
         if self.refusal:
             return f"refused  {self.case}: {self.refusal}"
         figures = ", ".join(f"{name} {value:.3f} m" for name, value in self.worst_m.items())
         return f"{self.case}: {self.late_s:.2f} s late, {self.simulated_s:.1f} s simulated, {figures}{self.said}"
-
-
-@contextlib.contextmanager
-def serving() -> Iterator[int]:
-    """Start a server on a free port, and yield the port."""
-    command = [str(BIN / "linden"), "serve", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-        assert process.stdout is not None
-        try:
-            ready = next(line for line in process.stdout if "rpc port" in line)
-            yield int(re.findall(r"rpc port (\d+)", ready)[0])
-        finally:
-            process.terminate()
 
 
 def watch(port: int, is_over: threading.Event, rows: Rows) -> None:
@@ -201,14 +184,9 @@ def compared(line: Line, exported: Exported, path: Path, rows: Rows) -> Line:
 
 def written(words: Sequence[str], folder: Path) -> Iterator[tuple[Line, Exported | None, Path]]:
     """Export cases, each into a file in ``folder``."""
-    opendrive = (Path(linden.__file__).parent / "data" / "Linden.xodr").read_text(encoding="utf-8")
-    town = carla.Map("Linden", opendrive)
-    lanes = lane_graph.build(town)
-    for playable in cases_of(words):
+    for playable, scenario, opendrive in placed_cases(words):
         case = playable.case.name
         line, path = Line(case, playable.scenario.__name__), folder / f"{case}.xosc"
-        route = plan(town, description_of(playable, town), lanes)
-        scenario = place_scenario(playable, route, town, own=True).scenario
         try:
             yield line, export_case(playable, scenario, opendrive, path, SCENARIO_RUNNER), path
         except BasuError as error:
@@ -216,7 +194,7 @@ def written(words: Sequence[str], folder: Path) -> Iterator[tuple[Line, Exported
 
 
 def table(lines: Sequence[Line]) -> str:
-    """Return the page."""
+    """Return the page with a row of the table for each scenario."""
     by_scenario: dict[str, list[Line]] = collections.defaultdict(list)
     for line in lines:
         by_scenario[line.scenario].append(line)
@@ -229,8 +207,7 @@ def table(lines: Sequence[Line]) -> str:
             max((one.distance_m for one in own), default=0),
         )
         figures = f"{late_s:.2f} | {far_m:.2f}" if own else " | "
-        why = sorted({line.refusal.partition("cannot be exported: ")[2] for line in of_it if line.refusal})
-        short = "; ".join(one.removesuffix(" has no counterpart in OpenSCENARIO") for one in why)
+        short = reasons(line.refusal for line in of_it)
         rows.append(f"| {name} | {len(own)} | {len(ended)} | {figures} | {short} |")
     own = [line for line in lines if not line.refusal]
     ended = [line for line in own if not line.said]
@@ -271,7 +248,7 @@ def main() -> int:
         ThreadPoolExecutor(arguments.workers) as pool,
     ):
         for _ in range(arguments.workers):
-            ports.put(servers.enter_context(serving()))
+            ports.put(servers.enter_context(running_server()).port)
         folder = (arguments.folder or Path(temporary)).resolve()
         folder.mkdir(parents=True, exist_ok=True)
         for one in [pool.submit(play, *made) for made in written(arguments.cases, folder)]:

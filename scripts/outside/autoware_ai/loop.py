@@ -29,6 +29,9 @@ from basu_ros.ros1 import Ros1Node
 from basu_ros.topics import odometry_of
 from linden_ros2.basic_messages import NS_PER_S
 
+sys.path.append(str(Path(__file__).parents[1]))
+from drive_figures import figures_of
+
 LAUNCH = Path(__file__).parents[3] / "docker" / "autoware" / "autoware_ai.launch"
 BASU = "from basu.cli import entry_point; entry_point()"
 GOAL_CM = 5.0
@@ -66,23 +69,7 @@ def main() -> int:
         stack.start("roslaunch", "roslaunch", str(LAUNCH), *(f"{name}:={value}" for name, value in options.items()))
         truth, found = listened(run, args.leaf)
     history = read_history(args.output / "latest")
-    result = json.loads((args.output / "latest" / "result.json").read_text(encoding="utf-8"))
-    lateral = np.abs(history.frames["lateral_m"])
-    told: dict[str, Any] = {
-        "status": result["status"],
-        "message": result.get("message"),
-        "frames": len(history.frames),
-        "driven_m": round(float(history.frames["route_s_m"].max()), 1),
-        "route_m": round(float(history.facts.route.s_m[-1]), 1),
-        "cross_track_mean_m": round(float(lateral.mean()), 3),
-        "cross_track_max_m": round(float(lateral.max()), 3),
-        "scores": result.get("scores"),
-        "stops_kept": f"{sum(sign['stopped'] for sign in result['stop_signs'])} of {len(result['stop_signs'])}",
-        "collisions": result["collisions"],
-        "infractions": [each["kind"] for each in result["infractions"]],
-        "simulated_s": result["meta"]["simulated_s"],
-        "times_real_time": round(result["meta"]["simulated_s"] / result["meta"]["wall_s"], 2),
-    }
+    told = figures_of(args.output / "latest", history)
     errors = ndt_errors(truth, found)
     if errors:
         away = np.array([each[1] for each in errors]) * 100.0

@@ -44,7 +44,7 @@ class LatchingCondition:
         self.far_m, self.moved_s, self.is_true = 0.0, 0.0, False
 
     def holds(self, now_s: float, world: "LatchingWorld") -> bool:
-        """Look at it."""
+        """Note once and for ever whether the condition has been true."""
         if self.first_s is None:
             self.first_s, self.moved_s, self.far_m = now_s, now_s + self.delay_s, 0.0
         if not self.is_true and now_s >= self.first_s + self.delay_s:
@@ -83,7 +83,7 @@ class LatchingWorld:
         self.conditions = {one: LatchingCondition(one) for act in self.acts for one in act.iter("Condition")}
 
     def body(self, name: str, now_s: float) -> tuple[float, ...]:
-        """Return the row of an actor."""
+        """Return the state of an actor in the present frame of the rehearsal."""
         nth = min(max(round(now_s / STEP_S), 0), len(self.played.times_s) - 1)
         return tuple(float(value) for value in self.played.trails[name][nth])
 

@@ -24,7 +24,7 @@ CASES = ("red_light_runner_1", "cut_in_before_stop_1", "pedestrian_crossing_1", 
 
 
 def all_of(where: Any, path: str) -> list[Any]:
-    """Return what an XPath finds."""
+    """Return the elements or attributes of a document that an XPath finds."""
     return list(where.xpath(path))
 
 

@@ -22,7 +22,7 @@ from openscenario_texts import (
 
 
 def player_of(folder, text):
-    """Return the player of a file."""
+    """Return the player of a file that is written with this content."""
     return make_player(read_scenario(written(folder, text)))
 
 

@@ -30,7 +30,7 @@ def traffic_of(frame):
 
 
 def played(player, step_s=0.05, longest_s=30.0):
-    """Return the frames of a play."""
+    """Return the frames of a scenario that is played in steps."""
     return list(player.play(step_s, longest_s))
 
 

@@ -25,7 +25,7 @@ def towing(name, trailer, *more):
 
 
 def player_of(folder, **rest):
-    """Return the player of a file."""
+    """Return the player of a file that is written with this content."""
     return make_player(read_scenario(written(folder, scenario(**{"stop": 20, "revision": (1, 3), **rest}))))
 
 

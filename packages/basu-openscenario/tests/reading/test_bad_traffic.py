@@ -15,7 +15,7 @@ SQUARE = polygon((100, -8), (300, -8), (300, 0))
 
 
 def template(inside: str) -> str:
-    """Return a distribution with one template."""
+    """Return a `TrafficDistribution` whose only entry is this template."""
     return f"""<TrafficDistribution><TrafficDistributionEntry weight="1"><EntityDistribution>
       <EntityDistributionEntry weight="1"><ScenarioObjectTemplate>{inside}</ScenarioObjectTemplate>
       </EntityDistributionEntry></EntityDistribution></TrafficDistributionEntry></TrafficDistribution>"""

@@ -78,7 +78,7 @@ class Others(NamedTuple):
 
 
 class Views(NamedTuple):
-    """The observations of E vehicles."""
+    """Arrays with the observations of E vehicles, which `put_view` fills."""
 
     ego: F32  # (E, 6)
     route: F32  # (E, PREVIEW_POINTS, 2)

@@ -82,7 +82,7 @@ def private_action(name: str, world: World, mover: Mover, action: actions.Privat
 
 
 def global_action(name: str, world: World, action: actions.GlobalAction, line: str = "") -> RunningAction:
-    """Return a global action at work."""
+    """Return the running form of a global action, such as one on parameters, signals or traffic."""
     made = TRAFFIC_MAKERS.get(type(action), WorldChange)(name, world, action)
     made.line = line or made.line
     return made

@@ -65,9 +65,9 @@ class Mover:
     rear_m: tuple[float, float] | None = None
     """The rear axle of a vehicle with its reference point elsewhere; None: as its pose has it."""
     tow: Mover | None = None
-    """The vehicle that tows it."""
+    """The vehicle that tows this trailer; None for one that is not towed."""
     trailer: Mover | None = None
-    """The trailer that it tows."""
+    """The trailer behind this vehicle; None for a vehicle without one."""
 
     def __post_init__(self) -> None:
         """Put the rear axle where the entity begins."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from basu.scenarios.actions.path_follower import HEADWAY_S, JAM_M, FollowerLimits
 from basu_openscenario.playing.mover import Mover
-from basu_openscenario.playing.traffic_driver import DECIDE_S, UNPOSTED_MPS, TrafficDriver, seen
+from basu_openscenario.playing.traffic_driver import DECIDE_S, TrafficDriver, seen
 from basu_openscenario.playing.transition import SMALL
 from basu_openscenario.reading.traffic import MOST_VEHICLES
 from basu_openscenario.roads.network import DRIVING, SAMPLE_M
@@ -114,12 +114,6 @@ class Traffic:
 def _by_weight(shares: Sequence[tuple[T, float]], rng: random.Random) -> T:
     """Return one of several by their weights."""
     return rng.choices([one for one, _ in shares], [weight for _, weight in shares])[0]
-
-
-def first_speed_mps(place: Place, given_mps: float | None, entity: Entity) -> float:
-    """Return the speed with which a vehicle appears: the given one, otherwise the posted one."""
-    posted = None if place.road is None else place.road.limit_mps(place.s_m)
-    return min(given_mps if given_mps is not None else posted or UNPOSTED_MPS, entity.performance.max_speed_mps)
 
 
 def lane_place(network: Network, road: str, s_m: float, lane: int) -> Place:

@@ -13,11 +13,11 @@ from basu_openscenario.playing.running_action import AtOnce, RunningAction
 from basu_openscenario.playing.traffic import (
     TRIES,
     driving_lanes,
-    first_speed_mps,
     has_room,
     lane_place,
     sampled,
 )
+from basu_openscenario.playing.traffic_driver import wished_mps
 from basu_openscenario.playing.transition import SMALL
 from basu_openscenario.reading import traffic as reading
 from basu_openscenario.roads.place import is_forward
@@ -100,12 +100,18 @@ class TrafficRunning(RunningAction):
         if place is None:
             return False
         self._waiting = None
-        self.own[traffic.bring(self.world, entity, place, first_speed_mps(place, given_mps, entity), given_mps)] = None
+        self.own[traffic.bring(self.world, entity, place, wished_mps(place, given_mps, entity), given_mps)] = None
         return True
+
+    def remove_outside(self, is_inside: Callable[[Place], bool]) -> None:
+        """Remove the vehicles that it has brought and that are at places which a function does not accept."""
+        for name in [name for name in self.own if not is_inside(self.world.mover(name).place)]:
+            self.world.traffic.remove(self.world, name)
+            del self.own[name]
 
     def _accepts(self, entity: Entity, given_mps: float | None, place: Place) -> bool:
         """Return whether there is room for a vehicle at a place."""
-        return has_room(self.world, place, entity, first_speed_mps(place, given_mps, entity))
+        return has_room(self.world, place, entity, wished_mps(place, given_mps, entity))
 
 
 class VehicleSource(TrafficRunning):
@@ -141,7 +147,7 @@ class VehicleSource(TrafficRunning):
             self.due -= 1.0
 
     def _find(self, accept: Callable[[Place], bool]) -> Place | None:
-        """Return a place within the radius."""
+        """Return a place within the radius of the source that a function accepts; None if there is none."""
         if self.lane is not None:
             place = lane_place(self.world.network, *self.lane)
             return place if accept(place) else None
@@ -163,7 +169,7 @@ class VehicleSink(TrafficRunning):
         self.every_s = 0.0
 
     def settle(self) -> None:
-        """Find the position."""
+        """Find where the sink is now, x and y in m."""
         place = self.world.place_of(self.action.position)
         self.middle_m = place.x_m, place.y_m
 
@@ -173,7 +179,7 @@ class VehicleSink(TrafficRunning):
         self.due = math.inf if rate is None else min(self.due + rate * step_s, max(1.0, rate * step_s))
 
     def manage(self) -> None:
-        """Remove the vehicles that are due."""
+        """Remove as many vehicles within the radius as are due, the nearest first."""
         world, (x_m, y_m) = self.world, self.middle_m
         found = []
         for name, driver in world.traffic.drivers.items():
@@ -199,9 +205,7 @@ class VehicleSwarm(TrafficRunning):
     def manage(self) -> None:
         """Remove the vehicles outside of the ellipse, and bring others."""
         world, action = self.world, self.action
-        for name in [name for name in self.own if not self._is_inside(world.mover(name).place)]:
-            world.traffic.remove(world, name)
-            del self.own[name]
+        self.remove_outside(self._is_inside)
         if len(self.own) >= action.count:
             return
         x_m, y_m = self._middle()
@@ -218,7 +222,7 @@ class VehicleSwarm(TrafficRunning):
         return None if speeds is None else self.world.traffic.rng.uniform(*speeds)
 
     def _middle(self) -> tuple[float, float]:
-        """Return the middle of the ellipse."""
+        """Return the middle of the swarm's ellipse, x and y in m."""
         there, offset_m = self.world.mover(self.action.entity).place, self.action.offset_m
         return there.x_m + offset_m * math.cos(there.h_rad), there.y_m + offset_m * math.sin(there.h_rad)
 
@@ -266,11 +270,8 @@ class AreaTraffic(TrafficRunning):
         """Bring the vehicles that the area lacks."""
         if self.is_done:
             return
-        world = self.world
         if self.action.is_continuous:
-            for name in [name for name in self.own if not self._is_inside(world.mover(name).place)]:
-                world.traffic.remove(world, name)
-                del self.own[name]
+            self.remove_outside(self._is_inside)
         while len(self.own) < self.action.count and self.bring(self.action.mix, lambda: None, self._find):
             pass
         self.is_done = not self.action.is_continuous
@@ -282,7 +283,7 @@ class AreaTraffic(TrafficRunning):
         return any(piece.has(place) for piece in self.pieces)
 
     def _find(self, accept: Callable[[Place], bool]) -> Place | None:
-        """Return a place in the area."""
+        """Return a place in the polygon or on the roads of the area that a function accepts; None if there is none."""
         if self.corners_m:
             return sampled(self.world, self.near, lambda place: self._is_inside(place) and accept(place))
         rng, network = self.world.traffic.rng, self.world.network
@@ -309,7 +310,7 @@ class TrafficStop(AtOnce):
         self.traffic_name, self.line = action.name, action.line
 
     def prepare(self) -> None:
-        """End what has begun."""
+        """End the running actions on traffic that have the name."""
         for one in self.world.traffic.running:
             if one.is_running and self.traffic_name in {"", one.traffic_name}:
                 one.end()

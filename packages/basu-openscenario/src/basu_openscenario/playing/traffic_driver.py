@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu_openscenario.playing.mover import Mover
+    from basu_openscenario.reading.entities import Entity
     from basu_openscenario.roads.network import Entry
+    from basu_openscenario.roads.place import Place
 
 POINT_M = 2.0
 """Distance of the points of the way ahead."""
@@ -56,7 +58,7 @@ class Seen(NamedTuple):
 
 
 def seen(movers: Sequence[Mover]) -> Seen:
-    """Return the boxes of entities."""
+    """Return the boxes of entities, each with its name, as arrays and one by one."""
     boxes = tuple(box_of(one) for one in movers)
     middles = np.array([box[:2] for box in boxes], dtype=np.float64).reshape(-1, 2)
     halves = np.array([(box.half_length_m, box.half_width_m) for box in boxes]).reshape(-1, 2)
@@ -74,8 +76,14 @@ def box_of(mover: Mover) -> ActorBox:
     return ActorBox(x_m, y_m, place.z_m, place.h_rad, vx, vy, box.length_m / 2.0, box.width_m / 2.0)
 
 
+def wished_mps(place: Place, given_mps: float | None, entity: Entity) -> float:
+    """Return the speed in m/s that a vehicle makes for: the given one, otherwise the posted one of its road."""
+    posted = None if place.road is None else place.road.limit_mps(place.s_m)
+    return min(given_mps if given_mps is not None else posted or UNPOSTED_MPS, entity.performance.max_speed_mps)
+
+
 class TrafficDriver:
-    """Drives one vehicle of traffic."""
+    """A driver of one vehicle of traffic: it keeps its lane and its distance."""
 
     def __init__(self, mover: Mover, wish_mps: float | None, rng: random.Random) -> None:
         """Take a vehicle on a road.
@@ -137,10 +145,7 @@ class TrafficDriver:
     @property
     def wanted_mps(self) -> float:
         """The speed that it makes for: the file's or the posted one, less in and before bends; m/s."""
-        place = self.mover.place
-        posted = None if place.road is None else place.road.limit_mps(place.s_m)
-        wish = self.wish_mps if self.wish_mps is not None else posted or UNPOSTED_MPS
-        wish = min(wish, self.mover.entity.performance.max_speed_mps)
+        wish = wished_mps(self.mover.place, self.wish_mps, self.mover.entity)
         ahead = self._bends_m >= self.s_m - POINT_M
         if not ahead.any():
             return wish

@@ -208,7 +208,7 @@ class LightStateAction:
 
 @dataclass(frozen=True, slots=True)
 class ConnectTrailerAction:
-    """Let the entity tow a trailer."""
+    """Connect a trailer to the vehicle that the action is for."""
 
     entity: str
 

@@ -153,8 +153,7 @@ def _condition(node: Node, catalogs: Catalogs) -> Condition:
     delay_s = node.number("delay", 0.0)
     if delay_s < 0.0:
         raise node.fault(f"the delay {delay_s:g} s is negative; give 0 or more")
-    line = f"{node.path}:{node.element.sourceline}"
-    return Condition(node.text("name", ""), node.choice("conditionEdge", EDGES), delay_s, test, line)
+    return Condition(node.text("name", ""), node.choice("conditionEdge", EDGES), delay_s, test, node.line)
 
 
 def _by_entity(node: Node, catalogs: Catalogs) -> ByEntity:

@@ -95,7 +95,7 @@ def read_entity(node: Node, name: str, catalogs: Catalogs) -> Entity:
         _performance(described),
         _properties(described),
         tuple(controllers),
-        f"{node.path}:{node.element.sourceline}",
+        node.line,
         described.text("name", ""),
         described.text("role", ""),
         ahead_m,
@@ -164,4 +164,4 @@ def read_controller(holder: Node, catalogs: Catalogs) -> Controller:
         ScenarioError: there is none.
     """
     node = referred(holder, "Controller", catalogs)
-    return Controller(node.text("name"), _properties(node), f"{node.path}:{node.element.sourceline}")
+    return Controller(node.text("name"), _properties(node), node.line)

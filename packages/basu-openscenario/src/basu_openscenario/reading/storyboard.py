@@ -101,18 +101,13 @@ def read_storyboard(node: Node, catalogs: Catalogs) -> Storyboard:
     private: list[tuple[str, PrivateAction, str]] = []
     for block in actions.children("Private"):
         entity = block.text("entityRef")
-        private += [(entity, read_private_action(one, catalogs), _line(one)) for one in block.children("PrivateAction")]
+        private += [(entity, read_private_action(one, catalogs), one.line) for one in block.children("PrivateAction")]
     return Storyboard(
         tuple(read_global_action(one, catalogs) for one in actions.children("GlobalAction")),
         tuple(private),
         tuple(_story(one, catalogs) for one in node.children("Story")),
         read_trigger(node.find("StopTrigger"), catalogs),
     )
-
-
-def _line(node: Node) -> str:
-    """Return file and line of an element."""
-    return f"{node.path}:{node.element.sourceline}"
 
 
 def _most(node: Node) -> int | None:
@@ -152,7 +147,7 @@ def _group(node: Node, catalogs: Catalogs) -> ManeuverGroup:
         tuple(one.text("entityRef") for one in actors.children("EntityRef")),
         actors.boolean("selectTriggeringEntities"),
         tuple(maneuvers),
-        _line(node),
+        node.line,
     )
 
 
@@ -172,7 +167,7 @@ def _event(node: Node, catalogs: Catalogs) -> Event:
             action = read_global_action(inside, catalogs)
         else:
             raise inside.fault(f"<{inside.tag}> is not supported; use PrivateAction or GlobalAction")
-        actions.append(NamedAction(one.text("name"), action, inside.tag == "PrivateAction", _line(one)))
+        actions.append(NamedAction(one.text("name"), action, inside.tag == "PrivateAction", one.line))
     return Event(
         node.text("name"),
         PRIORITIES[node.choice("priority", tuple(PRIORITIES))],

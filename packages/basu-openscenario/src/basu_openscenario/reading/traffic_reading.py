@@ -73,11 +73,6 @@ def read_traffic_action(holder: Node, catalogs: Catalogs) -> TrafficAction:
     return TRAFFIC_ACTIONS[node.tag](node, holder.text("trafficName", ""), catalogs)
 
 
-def _line(node: Node) -> str:
-    """Return file and line of an element."""
-    return f"{node.path}:{node.element.sourceline}"
-
-
 def _within(node: Node, name: str, most: float, unit: str, least: float = 0.0) -> float:
     """Return a number between bounds.
 
@@ -108,7 +103,7 @@ def _source(node: Node, name: str, catalogs: Catalogs) -> TrafficAction:
     speed = next((one for one in ("speed", "velocity") if node.has(one)), None)
     return TrafficSourceAction(
         name,
-        _line(node),
+        node.line,
         read_position(node.child("Position"), catalogs),
         _within(node, "radius", FARTHEST_M, "m"),
         _within(node, "rate", MOST_PER_S, "vehicles/s"),
@@ -123,7 +118,7 @@ def _sink(node: Node, name: str, catalogs: Catalogs) -> TrafficAction:
     shares = [] if definition is None else _category_shares(definition)
     return TrafficSinkAction(
         name,
-        _line(node),
+        node.line,
         read_position(node.child("Position"), catalogs),
         _within(node, "radius", FARTHEST_M, "m"),
         _within(node, "rate", MOST_PER_S, "vehicles/s") if node.has("rate") else None,
@@ -148,7 +143,7 @@ def _swarm(node: Node, name: str, catalogs: Catalogs) -> TrafficAction:
         raise directions.fault("both weights of <DirectionOfTravelDistribution> are 0; make one of them larger")
     return TrafficSwarmAction(
         name,
-        _line(node),
+        node.line,
         central.text("entityRef"),
         inner_m,
         axes_m[0],
@@ -184,7 +179,7 @@ def _area(node: Node, name: str, catalogs: Catalogs) -> TrafficAction:
         raise polygon.fault(f"<Polygon> has {len(corners)} positions; it needs from 3 to {MOST_ENTRIES}")
     return TrafficAreaAction(
         name,
-        _line(node),
+        node.line,
         _count(node, "numberOfEntities"),
         node.boolean("continuous"),
         tuple(read_position(one, catalogs) for one in corners),
@@ -204,13 +199,13 @@ def _stretch(node: Node) -> RoadStretch:
         tuple(one.number("s") if one.has("s") else None for one in cursors),
         tuple(one or None for one in lanes),
         node.number("length") if node.has("length") else None,
-        _line(node),
+        node.line,
     )
 
 
 def _stop(node: Node, name: str, _: Catalogs) -> TrafficAction:
     """Return a ``TrafficStopAction``."""
-    return TrafficStopAction(name, _line(node))
+    return TrafficStopAction(name, node.line)
 
 
 TRAFFIC_ACTIONS: dict[str, Callable[[Node, str, Catalogs], TrafficAction]] = {
@@ -234,8 +229,8 @@ def _mix(node: Node, catalogs: Catalogs) -> TrafficMix:
         ]
         return TrafficMix(tuple(_some(distribution, bodies)))
     if definition is None:
-        return TrafficMix(((_body("car", _line(node)), 1.0),))
-    shares = [(_body(category, _line(definition)), weight) for category, weight in _category_shares(definition)]
+        return TrafficMix(((_body("car", node.line), 1.0),))
+    shares = [(_body(category, definition.line), weight) for category, weight in _category_shares(definition)]
     roles = definition.find("VehicleRoleDistribution")
     given = [] if roles is None else list(roles.children("VehicleRoleDistributionEntry"))
     found = [(one.choice("role", ROLES), _weight(one)) for one in given]

@@ -37,9 +37,14 @@ class Node:
         """The name of the element."""
         return str(etree.QName(self.element).localname)
 
+    @property
+    def line(self) -> str:
+        """The file and the line of this element, as messages name them."""
+        return f"{self.path}:{self.element.sourceline}"
+
     def fault(self, sentence: str) -> ScenarioError:
         """Return an error that begins with file and line of this element."""
-        return ScenarioError(f"{self.path}:{self.element.sourceline}: {sentence}")
+        return ScenarioError(f"{self.line}: {sentence}")
 
     def within(self, scope: Scope) -> Node:
         """Return this element with other parameters."""

@@ -65,7 +65,7 @@ MOST_BONES = 32
 
 @lru_cache(maxsize=1)
 def bones() -> BoneChain:
-    """Return the bones of all walkers."""
+    """Return the skeleton that all walkers have, as arrays for compiled functions."""
     all_bones = skeleton()
     feet = [f"crl_{part}__{side}" for part in ("foot", "toe") for side in "LR"]
     wanted: set[int] = set()
